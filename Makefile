@@ -1,0 +1,38 @@
+# Everything below works on a bare checkout with Python 3.11 or newer on the path.
+PYTHON ?= python3
+VENV ?= .venv
+BIN := $(VENV)/bin
+ARGS ?=
+
+.PHONY: search test check docs bench lock clean
+
+search: $(VENV)/.installed  ## find a cup in the built-in kitchen, told step by step
+	$(BIN)/qsr search kitchen --seed 7 $(ARGS)
+
+test: $(VENV)/.installed  ## the whole test suite
+	$(BIN)/python -m pytest -n 2 --dist worksteal $(ARGS)
+
+check: $(VENV)/.installed  ## style, types and the architecture test
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/python -m pytest -q tests/test_architecture.py
+
+docs: $(VENV)/.installed  ## the figures and tables of docs/, made anew
+	$(BIN)/python docs/make_figures.py $(ARGS)
+
+bench: $(VENV)/.installed  ## every benchmark, ratios printed
+	for file in benchmarks/bench_*.py; do $(BIN)/python $$file $(ARGS) || exit 1; done
+
+lock: $(VENV)/.installed  ## pin every dependency anew
+	$(BIN)/pip-compile --quiet --strip-extras --all-build-deps --extra dev --no-emit-index-url \
+	    --no-emit-find-links --no-emit-trusted-host --no-header -o requirements.lock pyproject.toml
+
+$(VENV)/.installed: requirements.lock pyproject.toml
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -r requirements.lock
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
+	touch $@
+
+clean:
+	rm -rf $(VENV) build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis runs

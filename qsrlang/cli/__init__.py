@@ -1,0 +1,1 @@
+"""The command `qsr`: one verb per file."""

@@ -1,0 +1,1 @@
+"""Comparisons of search methods: scenarios, trials, statistics and tables."""

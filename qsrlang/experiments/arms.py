@@ -1,0 +1,62 @@
+"""One trial of one arm, and the worker that does such trials one after the other."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from qsrlang.experiments.briefings import Briefing
+from qsrlang.experiments.places import Place, build_world
+from qsrlang.experiments.scenarios import Scenario
+from qsrlang.experiments.trials import Trial, trial_of
+from qsrlang.maps.navigation import NavigationGrid
+from qsrlang.search.loop import Watcher, search
+from qsrlang.search.outcome import SearchResult
+from qsrlang.search.seeding import TrialSeeds
+from qsrlang.search.world import World
+
+
+@dataclass(frozen=True, slots=True)
+class TrialJob:
+    """One trial to do: which arm, and the number that picks its random streams."""
+
+    arm: str
+    number: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TrialSetup:
+    """What a process needs for the trials of a comparison: the place and its truth, and a briefing for each arm."""
+
+    scenario: Scenario
+    variant: str
+    place: Place
+    briefings: tuple[Briefing, ...]
+    seed: int
+
+
+class TrialWorker:
+    """Does trials in a world that it builds once; a trial's outcome depends on its job and the setup alone."""
+
+    def __init__(self, setup: TrialSetup) -> None:
+        self._setup = setup
+        self._briefings = {briefing.arm: briefing for briefing in setup.briefings}
+        self._world = build_world(setup.scenario, setup.place, setup.variant)
+
+    def __call__(self, job: TrialJob) -> Trial:
+        """Do one trial from the robot's start."""
+        briefing = self._briefings[job.arm]
+        self._world.reset()
+        seeds = TrialSeeds(self._setup.seed, job.number)
+        result = run_trial(self._world, briefing, self._setup.place.reachable, seeds)
+        return trial_of(job.arm, job.number, result, briefing.limits.seconds)
+
+    def close(self) -> None:
+        """Free the world."""
+        self._world.close()
+
+
+def run_trial(
+    world: World, briefing: Briefing, reachable: NavigationGrid, seeds: TrialSeeds, watch: Watcher | None = None
+) -> SearchResult:
+    """Return what a robot with this briefing does in the world, from where it stands."""
+    return search(world, briefing.planner, reachable, briefing.target, briefing.limits, seeds, watch)

@@ -1,0 +1,116 @@
+"""Briefings: what the robot of one arm is told before it starts, and the planner that this makes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from qsrlang.arrays import FloatArray
+from qsrlang.errors import OutsideMapError, UnreachedTargetError
+from qsrlang.experiments.places import Place
+from qsrlang.experiments.presets import PlannerEntry
+from qsrlang.experiments.scenarios import Arm, Scenario
+from qsrlang.geometry.pose import Pose2
+from qsrlang.geometry.viewcone import ViewCone
+from qsrlang.maps.supports import Supports, find_supports
+from qsrlang.mixtures.answers import Where
+from qsrlang.mixtures.queries import KnowledgeBase, load
+from qsrlang.search.belief import voxel_weights
+from qsrlang.search.outcome import Limits
+from qsrlang.search.planners import Planner, make_planner
+
+QSR = "qsr"
+
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Briefing:
+    """What the robot of an arm knows: the target's class, supports and their weights (K,), landmarks and beliefs.
+
+    `belief` says where the statements place the target, map frame; it is None for arms that use no knowledge.
+    """
+
+    arm: str
+    target: str
+    supports: Supports
+    weights: FloatArray
+    belief: Where | None
+    landmarks: tuple[tuple[str, Pose2], ...]
+    cone: ViewCone
+    limits: Limits
+    planner: Planner
+
+
+def brief(scenario: Scenario, arms: Sequence[Arm], place: Place, target: str) -> tuple[Briefing, ...]:
+    """Return the briefings of several arms in one place; supports are found once for each way to find them.
+
+    Raises UnreachedTargetError where an arm's knowledge ties the target to no landmark, and OutsideMapError
+    where a landmark lies outside the map.
+    """
+    found: dict[str, Supports] = {}
+    briefings = []
+    for arm in arms:
+        key = arm.preset.supports.model_dump_json()
+        if key not in found:
+            found[key] = supports_of(scenario, arm.preset, place)
+        briefings.append(_briefing(scenario, arm, place, found[key], target))
+    return tuple(briefings)
+
+
+def supports_of(scenario: Scenario, preset: PlannerEntry, place: Place) -> Supports:
+    """Return the supporting planes of a place as a preset wants them found."""
+    wanted, floor = preset.supports, scenario.floor_height
+    return find_supports(
+        place.voxels,
+        method=wanted.method,
+        max_tilt=math.radians(wanted.max_tilt_deg),
+        min_height=None if wanted.min_height is None else floor + wanted.min_height,
+        max_height=None if wanted.max_height is None else floor + wanted.max_height,
+        min_part=wanted.min_part,
+    )
+
+
+def _briefing(scenario: Scenario, arm: Arm, place: Place, supports: Supports, target: str) -> Briefing:
+    preset, cone, places = arm.preset, arm.preset.cone(), supports.centres[:, :2]
+    weights, belief, landmarks = np.ones(len(places)), None, tuple[tuple[str, Pose2], ...]()
+    if arm.planner == QSR:
+        known = known_to(scenario, arm, place)
+        belief, landmarks = _belief(known, arm, target), _poses(known)
+        claimed = 1.0 - belief.elsewhere
+        weights = voxel_weights(belief.mixture, places, preset.weight_floor, preset.weight_gain, claimed)
+    return Briefing(
+        arm=arm.name,
+        target=target,
+        supports=supports,
+        weights=weights,
+        belief=belief,
+        landmarks=landmarks,
+        cone=cone,
+        limits=arm.limits,
+        planner=make_planner(arm.planner, cone, places, weights),
+    )
+
+
+def known_to(scenario: Scenario, arm: Arm, place: Place) -> KnowledgeBase:
+    """Return the knowledge of an arm with the scenario's landmarks; OutsideMapError where one is off the map."""
+    known = load(arm.knowledge).with_landmarks(*scenario.landmarks)
+    for landmark in known.landmarks:
+        if not place.occupancy.covers([landmark.x, landmark.y]):
+            what, point = f"landmark '{landmark.name}'", (landmark.x, landmark.y)
+            raise OutsideMapError(what, point, place.occupancy.bounds, place.occupancy.source)
+    return known
+
+
+def _belief(known: KnowledgeBase, arm: Arm, target: str) -> Where:
+    try:
+        return known.where(target)
+    except UnreachedTargetError as error:
+        chains = error.chains or (f"no statement places {target}",)
+        raise UnreachedTargetError(target, [f"{arm.knowledge}: {chain}" for chain in chains]) from None
+
+
+def _poses(known: KnowledgeBase) -> tuple[tuple[str, Pose2], ...]:
+    return tuple((one.name, Pose2(one.x, one.y, one.heading or 0.0)) for one in known.landmarks)

@@ -1,0 +1,164 @@
+"""Presets: cameras, robots and planners as files under knowledge/presets/, so that no number hides in the code."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Literal, TypeVar
+
+from pydantic import Field
+
+from qsrlang.errors import FileError, UnknownNameError, ValueRangeError
+from qsrlang.experiments.tomlfiles import Entry, EntryT, read_entry
+from qsrlang.geometry.viewcone import Sector, Triangle, ViewCone
+from qsrlang.resources import resource_root
+from qsrlang.search.outcome import Limits
+from qsrlang.search.sensing import Camera, Robot
+
+Positive = Annotated[float, Field(gt=0.0)]
+Count = Annotated[int, Field(ge=1, le=1_000_000)]
+
+
+class CameraEntry(Entry):
+    """A camera file: lengths in metres, angles in degrees, a positive tilt looks up."""
+
+    title: str
+    near: Positive
+    far: Positive
+    horizontal_fov_deg: Annotated[float, Field(gt=0.0, lt=180.0)]
+    vertical_fov_deg: Annotated[float, Field(gt=0.0, lt=180.0)]
+    height: Positive
+    tilt_deg: Annotated[float, Field(gt=-90.0, lt=90.0)]
+
+    def camera(self) -> Camera:
+        """Return the camera in metres and radians."""
+        return Camera(
+            near=self.near,
+            far=self.far,
+            horizontal_fov=math.radians(self.horizontal_fov_deg),
+            vertical_fov=math.radians(self.vertical_fov_deg),
+            height=self.height,
+            tilt=math.radians(self.tilt_deg),
+        )
+
+
+class RobotEntry(Entry):
+    """A robot file: clearance [m], speed [m/s], turn rate [rad/s], dwell at a look [s]."""
+
+    title: str
+    clearance: Positive
+    speed: Positive
+    turn_rate: Positive
+    dwell: Annotated[float, Field(ge=0.0)]
+
+    def robot(self) -> Robot:
+        """Return the robot."""
+        return Robot(self.clearance, self.speed, self.turn_rate, self.dwell)
+
+
+class TriangleEntry(Entry):
+    """A triangle that scores views [m]."""
+
+    length: Positive
+    half_width: Positive
+
+
+class SectorEntry(Entry):
+    """A ring sector that scores views [m, degrees]."""
+
+    near: Annotated[float, Field(ge=0.0)]
+    far: Positive
+    fov_deg: Annotated[float, Field(gt=0.0, le=360.0)]
+
+
+class SupportsEntry(Entry):
+    """How supporting planes are found; heights are above the floor [m]."""
+
+    method: Literal["pca", "mean-normal"]
+    max_tilt_deg: Annotated[float, Field(gt=0.0, lt=90.0)]
+    min_height: float | None = None
+    max_height: float | None = None
+    min_part: Count = 1
+
+
+class LimitsEntry(Entry):
+    """When a search gives up: seconds and poses."""
+
+    seconds: Positive
+    poses: Count
+
+
+class PlannerEntry(Entry):
+    """A planner file: candidates, the cone that scores them, voxel weights, supports and limits."""
+
+    title: str
+    candidates: Count
+    view: TriangleEntry | SectorEntry
+    weight_floor: Annotated[float, Field(ge=0.0)]
+    weight_gain: Annotated[float, Field(ge=0.0)]
+    supports: SupportsEntry
+    limits: LimitsEntry
+
+    def cone(self) -> ViewCone:
+        """Return the view cone that scores the candidates."""
+        if isinstance(self.view, TriangleEntry):
+            return Triangle(self.view.length, self.view.half_width)
+        return Sector(self.view.near, self.view.far, math.radians(self.view.fov_deg))
+
+    def search_limits(self, override: LimitsEntry | None = None) -> Limits:
+        """Return the limits of a search, those of a scenario before those of the preset."""
+        limits = override or self.limits
+        return Limits(limits.seconds, limits.poses, self.candidates)
+
+
+@dataclass(frozen=True, slots=True)
+class Preset:
+    """A preset's name and the file it stands in."""
+
+    name: str
+    path: Path
+
+
+ValueT = TypeVar("ValueT")
+
+
+def find_preset(kind: str, name: str, beside: Path) -> Preset:
+    """Return the preset `name` of a kind ("cameras", "robots", "planners"): shipped, or a .toml beside a scenario."""
+    if name.endswith(".toml"):
+        return Preset(Path(name).stem, beside / name)
+    folder = resource_root("knowledge") / "presets" / kind
+    known = sorted(path.stem for path in folder.glob("*.toml"))
+    if name not in known:
+        raise UnknownNameError(f"preset of {kind}", name, known)
+    return Preset(name, folder / f"{name}.toml")
+
+
+def read_camera(preset: Preset) -> Camera:
+    """Return the camera of a preset file."""
+    return _made(preset, CameraEntry, CameraEntry.camera)
+
+
+def read_robot(preset: Preset) -> Robot:
+    """Return the robot of a preset file."""
+    return _made(preset, RobotEntry, RobotEntry.robot)
+
+
+def read_planner(preset: Preset) -> PlannerEntry:
+    """Return the planner of a preset file."""
+    entry = read_entry(preset.path, PlannerEntry)
+    _checked(preset, entry.cone)
+    return entry
+
+
+def _made(preset: Preset, model: type[EntryT], make: Callable[[EntryT], ValueT]) -> ValueT:
+    entry = read_entry(preset.path, model)
+    return _checked(preset, lambda: make(entry))
+
+
+def _checked(preset: Preset, make: Callable[[], ValueT]) -> ValueT:
+    try:
+        return make()
+    except ValueRangeError as error:
+        raise FileError(preset.path, str(error), "change it") from None

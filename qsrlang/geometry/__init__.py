@@ -1,0 +1,1 @@
+"""Plane geometry in metres and radians, REP 103 axes: x forward, y left, headings counter-clockwise."""

@@ -1,0 +1,119 @@
+"""Shortest paths over navigable cells, and what driving them costs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from qsrlang.arrays import FloatArray, frozen_array
+from qsrlang.errors import ValueRangeError
+from qsrlang.geometry.angles import wrap
+from qsrlang.maps.navigation import NavigationGrid
+from qsrlang.maps.sight import spread, trace, traced_lengths
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DistanceField:
+    """Shortest paths from one start: `parents` (H W,) holds the flat parent of each flat cell, -1 where none.
+
+    Paths are any-angle (Lazy Theta*, Nash et al. 2010, then pulled straight): their corners are cell centres,
+    they never cut corners, and they are never longer than the shortest 8-connected path between the ends.
+    """
+
+    navigation: NavigationGrid
+    start: FloatArray
+    parents: npt.NDArray[np.int32]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "start", frozen_array("the start of a path", self.start, (2,)))
+        parents = frozen_array(
+            "the parents of cells", self.parents, (self.navigation.navigable.size,), np.int32
+        )
+        object.__setattr__(self, "parents", parents)
+
+    @classmethod
+    def from_start(cls, navigation: NavigationGrid, start_xy: npt.ArrayLike) -> DistanceField:
+        """Return the paths from a start (x, y) [m].
+
+        Raises OutsideMapError or BlockedPoseError where the start is not navigable.
+        """
+        start = np.asarray(start_xy, dtype=np.float64)[:2]
+        cell = _flat(navigation, start, "the start of a path")
+        return cls(navigation, start, spread(navigation.navigable, navigation.moves, cell, -1)[1])
+
+    def lengths_to(self, points_map: npt.ArrayLike) -> FloatArray:
+        """Return the lengths (N,) [m] of the paths to points (N, 2), infinite where there is no way."""
+        points = frozen_array("the goals of paths", points_map, (None, 2))
+        reached = self._reached(points)
+        (start_x, start_y), goals = self._steps(self.start), self._steps(points[reached])
+        lengths = np.full(len(points), np.inf)
+        lengths[reached] = self.navigation.grid.resolution * traced_lengths(
+            self.navigation.navigable, self.parents, start_x, start_y, goals, self._room()
+        )
+        return lengths
+
+    def path_to(self, point_map: npt.ArrayLike) -> FloatArray:
+        """Return the corners (K, 2) [m] of the path to a point (x, y), the exact start first, the point last.
+
+        Raises OutsideMapError or BlockedPoseError where the point is not navigable, and ValueRangeError where
+        it is cut off from the start.
+        """
+        point = np.asarray(point_map, dtype=np.float64)[:2]
+        self.navigation.cell_of(point, "the end of a path")
+        if not self._reached(point[None])[0]:
+            goal = f"({point[0]:.2f} m, {point[1]:.2f} m)"
+            raise ValueRangeError("the end of a path", goal, "a place that can be reached from its start")
+        (start_x, start_y), (goal_x, goal_y), path = self._steps(self.start), self._steps(point), self._room()
+        count = trace(self.navigation.navigable, self.parents, start_x, start_y, goal_x, goal_y, path)
+        corners = self.navigation.grid.origin.transform(path[:count] * self.navigation.grid.resolution)
+        corners[0], corners[-1] = self.start, point
+        return corners
+
+    def _steps(self, points_map: FloatArray) -> FloatArray:
+        grid = self.navigation.grid
+        return np.asarray(grid.origin.transform_inverse(points_map) / grid.resolution)
+
+    def _reached(self, points_map: FloatArray) -> npt.NDArray[np.bool_]:
+        reached = self.navigation.is_navigable(points_map)
+        rows, columns = self.navigation.grid.cells_of(points_map[reached]).T
+        reached[reached] = self.parents[rows * self.navigation.navigable.shape[1] + columns] >= 0
+        return reached
+
+    def _room(self) -> FloatArray:
+        return np.empty((int(np.count_nonzero(self.parents >= 0)) + 3, 2))
+
+
+def shortest_path(navigation: NavigationGrid, start_xy: npt.ArrayLike, end_xy: npt.ArrayLike) -> FloatArray:
+    """Return the corners (K, 2) [m] of the path from start to end, both (x, y), by one search.
+
+    Raises what `DistanceField.path_to` raises.
+    """
+    start, end = (np.asarray(point, dtype=np.float64)[:2] for point in (start_xy, end_xy))
+    begin, goal = _flat(navigation, start, "the start of a path"), _flat(navigation, end, "the end of a path")
+    parents = spread(navigation.navigable, navigation.moves, begin, goal)[1]
+    return DistanceField(navigation, start, parents).path_to(end)
+
+
+def path_length(path: npt.ArrayLike) -> float:
+    """Return the length of a polyline (K, 2) [m]; 0 for fewer than two points."""
+    points = np.asarray(path, dtype=np.float64).reshape(-1, 2)
+    return float(np.hypot(*np.diff(points, axis=0).T).sum())
+
+
+def turn_angles(path: npt.ArrayLike, start_yaw: float, end_yaw: float) -> FloatArray:
+    """Return the signed turns [rad, in (-pi, pi]] of a robot that drives the legs of a polyline (K, 2).
+
+    The first turns from `start_yaw` into the first leg, the last from the last leg to `end_yaw`; legs of no
+    length count for nothing. The total turning is the sum of the absolute values.
+    """
+    legs = np.diff(np.asarray(path, dtype=np.float64).reshape(-1, 2), axis=0)
+    legs = legs[np.hypot(legs[:, 0], legs[:, 1]) > 0.0]
+    headings = np.concatenate([[start_yaw], np.arctan2(legs[:, 1], legs[:, 0]), [end_yaw]])
+    return wrap(np.diff(headings))
+
+
+def _flat(navigation: NavigationGrid, point_map: FloatArray, what: str) -> int:
+    row, column = navigation.cell_of(point_map, what)
+    return row * int(navigation.navigable.shape[1]) + column

@@ -1,0 +1,1 @@
+"""From relations and poses to Gaussian mixtures."""

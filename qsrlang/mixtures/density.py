@@ -1,0 +1,227 @@
+"""An atom, or several on one ordered pair, as a polar density: angle about an axis, distance along each direction."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from qsrlang.arrays import BoolArray, FloatArray, IntArray
+from qsrlang.errors import NoRoomError
+from qsrlang.geometry.angles import unit, wrap
+from qsrlang.geometry.polygon import ConvexPolygon
+from qsrlang.language.syntax import Density, Dimension, Uniform
+from qsrlang.mixtures.angles import Bump, terms
+
+MIN_OVERLAP = 1e-12
+MIN_ROOM = 1e-3
+_REDRAWS = 16
+_CHUNK = 4096
+
+
+@dataclass(frozen=True, slots=True)
+class Boxes:
+    """Half lengths (along x) and half widths (along y) of referent and relatum [m]; a relatum may be the support."""
+
+    referent: tuple[float, float]
+    relatum: tuple[float, float]
+    relatum_supports: bool = False
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Stance:
+    """P possible stands of the relatum: positions (P, 2), box headings (P,), axes (P, J), support poses (P, 3)."""
+
+    positions: FloatArray
+    yaws: FloatArray
+    axes: FloatArray
+    support_poses: FloatArray | None = None
+
+    def at(self, chosen: BoolArray | IntArray | slice) -> Stance:
+        """Return some of the stands."""
+        poses = None if self.support_poses is None else self.support_poses[chosen]
+        return Stance(self.positions[chosen], self.yaws[chosen], self.axes[chosen], poses)
+
+
+@dataclass(frozen=True, slots=True)
+class PolarDensity:
+    """p(x | relatum) ~ prod_j a_j(h_j (theta - alpha_j)) U(r; lo(theta), hi(theta)) / r, x = relatum + r u(theta).
+
+    `angles` (J) are the angle factors, `hands` (J) are +1 where angles grow counter-clockwise and -1 where the
+    frame mirrors them; `distances` are the distance factors, all of which bound r. Distances run from where the
+    boxes touch to where the referent's box meets the edge of the support (given in the support's own frame), or
+    over `reach` where no support is known. Directions without room are left out; from a stand where less than
+    MIN_ROOM of the angle has room, the boxes touch. NoRoomError where no stand has room.
+    """
+
+    angles: tuple[Density | None, ...]
+    hands: tuple[float, ...]
+    distances: tuple[Density, ...]
+    boxes: Boxes
+    support: ConvexPolygon | None
+    reach: float
+    what: str
+
+    def moments(self, stance: Stance) -> tuple[FloatArray, FloatArray]:
+        """Return the exact mean (P, 2) and covariance (P, 2, 2) of x at each stand.
+
+        Quadrature over the angle; closed form in r: E r = (lo + hi) / 2, E r^2 = (lo^2 + lo hi + hi^2) / 3.
+        """
+        directions, weights, low, high = self._rays(stance, strict=True)
+        u = unit(directions)
+        mean = np.einsum("pn,pn,pnd->pd", weights, 0.5 * (low + high), u)
+        second = np.einsum("pn,pn,pni,pnj->pij", weights, (low**2 + low * high + high**2) / 3.0, u, u)
+        return stance.positions + mean, second - np.einsum("pi,pj->pij", mean, mean)
+
+    def sample(self, stance: Stance, rng: np.random.Generator) -> FloatArray:
+        """Return one draw of x from each stand: (P, 2)."""
+        if len(self.angles) == 1:
+            return self._draw_by_rejection(stance, rng)
+        return self._draw_by_inversion(stance, rng)
+
+    def pdf(self, points: FloatArray, stance: Stance) -> FloatArray:
+        """Return p(x | relatum) of points (P, 2), one per stand: (P,) [1/m^2]."""
+        offsets = points - stance.positions
+        r = np.hypot(offsets[:, 0], offsets[:, 1])
+        theta = np.arctan2(offsets[:, 1], offsets[:, 0])[:, None]
+        low, high = (bound[:, 0] for bound in self.bounds(stance, theta))
+        inside = (r >= low) & (r <= high) & (high > low)
+        densities = self._angle_pdf(theta, stance)[:, 0] / self._normaliser(stance)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.where(inside, densities / ((high - low) * r), 0.0)
+
+    def bounds(self, stance: Stance, directions: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the least and the greatest distance along directions (P, N): twice (P, N) [m]."""
+        contact = self._contact(stance, directions)
+        edge = contact + self.reach if self.support is None else self._edge(stance, directions, self.support)
+        low, high = contact, np.full_like(contact, np.inf)
+        for density in self.distances:
+            if isinstance(density, Uniform):
+                scale = edge - contact if density.low.dimension is Dimension.FRACTION else 1.0
+                low = np.maximum(low, contact + density.low.value * scale)
+                high = np.minimum(high, contact + density.high.value * scale)
+        bounded = self.support is not None or not np.isfinite(high).all()
+        return low, np.minimum(high, edge) if bounded else high
+
+    def _contact(self, stance: Stance, directions: FloatArray) -> FloatArray:
+        length = self.boxes.referent[0] + self.boxes.relatum[0]
+        width = self.boxes.referent[1] + self.boxes.relatum[1]
+        if self.boxes.relatum_supports or length + width == 0.0:
+            return np.zeros_like(directions)
+        off = unit(directions - stance.yaws[:, None])
+        with np.errstate(divide="ignore", invalid="ignore"):
+            along = np.where(off[..., 0] != 0.0, length / np.abs(off[..., 0]), np.inf)
+            across = np.where(off[..., 1] != 0.0, width / np.abs(off[..., 1]), np.inf)
+        return np.asarray(np.minimum(along, across))
+
+    def _edge(self, stance: Stance, directions: FloatArray, support: ConvexPolygon) -> FloatArray:
+        assert stance.support_poses is not None
+        x, y, yaw = stance.support_poses.T
+        turned = unit(-yaw)
+        shift = stance.positions - np.stack([x, y], axis=-1)
+        local = np.stack(
+            [
+                turned[:, 0] * shift[:, 0] - turned[:, 1] * shift[:, 1],
+                turned[:, 1] * shift[:, 0] + turned[:, 0] * shift[:, 1],
+            ],
+            axis=-1,
+        )
+        inside = support.nearest(local)
+        margins = support.box_reach(stance.yaws - yaw, *self.boxes.referent)
+        return support.ray_lengths(inside[:, None], unit(directions - yaw[:, None]), margins[:, None])
+
+    def _nodes(self, stance: Stance) -> tuple[FloatArray, FloatArray]:
+        """Return directions (P, N) and their weights (P, N), the sum over terms of products of angle factors."""
+        directions, weights = [], []
+        for share, factors in terms(self.angles):
+            narrow = min(range(len(factors)), key=lambda j: factors[j].spread)
+            angles, angle_weights = factors[narrow].nodes()
+            theta = stance.axes[:, [narrow]] + self.hands[narrow] * angles
+            others = self._product(theta, stance, factors, skip=narrow)
+            directions.append(theta)
+            weights.append(share * angle_weights * others)
+        return np.concatenate(directions, axis=1), np.concatenate(weights, axis=1)
+
+    def _angle_pdf(self, theta: FloatArray, stance: Stance) -> FloatArray:
+        return np.asarray(
+            sum(share * self._product(theta, stance, factors) for share, factors in terms(self.angles))
+        )
+
+    def _product(
+        self, theta: FloatArray, stance: Stance, factors: tuple[Bump, ...], skip: int | None = None
+    ) -> FloatArray:
+        product = np.ones_like(theta)
+        for j, factor in enumerate(factors):
+            if j != skip:
+                product = product * factor.pdf(self.hands[j] * (theta - stance.axes[:, [j]]))
+        return product
+
+    def _rays(self, stance: Stance, strict: bool) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Return directions, normalised weights, least and greatest distances, each (P, N)."""
+        directions, weights = self._nodes(stance)
+        weights = weights / self._overlap(weights)
+        low, high = self.bounds(stance, directions)
+        roomy = np.where(high > low, weights, 0.0)
+        room = roomy.sum(axis=1, keepdims=True)
+        if strict and (room < MIN_ROOM).all():
+            raise NoRoomError(self.what, "the support")
+        with np.errstate(invalid="ignore", divide="ignore"):
+            weights = np.where(room < MIN_ROOM, weights, roomy / room)
+        return directions, weights, low, np.maximum(low, high)
+
+    def _overlap(self, weights: FloatArray) -> FloatArray:
+        mass = weights.sum(axis=1, keepdims=True)
+        if (mass < MIN_OVERLAP).any():
+            raise NoRoomError(self.what, "any side of the relatum, for its relations contradict each other")
+        return np.asarray(mass)
+
+    def _normaliser(self, stance: Stance) -> FloatArray:
+        parts = []
+        for at in range(0, len(stance.positions), _CHUNK):
+            part = stance.at(slice(at, at + _CHUNK))
+            directions, weights = self._nodes(part)
+            low, high = self.bounds(part, directions)
+            parts.append(np.where(high > low, weights, 0.0).sum(axis=1))
+        return np.concatenate(parts)
+
+    def _draw_by_rejection(self, stance: Stance, rng: np.random.Generator) -> FloatArray:
+        """Draw the angle directly, and again where the direction has no room; invert for the few that remain."""
+        points = np.array(stance.positions)
+        waiting = np.arange(len(points))
+        for _ in range(_REDRAWS):
+            part = stance.at(waiting)
+            theta = part.axes + self.hands[0] * self._draw_angles(len(waiting), rng)[:, None]
+            low, high = (bound[:, 0] for bound in self.bounds(part, theta))
+            free = high > low
+            r = rng.uniform(low[free], high[free])
+            points[waiting[free]] = part.positions[free] + r[:, None] * unit(theta[free, 0])
+            waiting = waiting[~free]
+            if len(waiting) == 0:
+                return points
+        points[waiting] = self._draw_by_inversion(stance.at(waiting), rng)
+        return points
+
+    def _draw_angles(self, count: int, rng: np.random.Generator) -> FloatArray:
+        weighted = [(share, factors[0]) for share, factors in terms(self.angles)]
+        draws = np.stack([bump.sample(count, rng) for _, bump in weighted])
+        chosen = rng.choice(len(weighted), size=count, p=[share for share, _ in weighted])
+        return np.asarray(wrap(draws[chosen, np.arange(count)]))
+
+    def _draw_by_inversion(self, stance: Stance, rng: np.random.Generator) -> FloatArray:
+        chunks = [slice(at, at + _CHUNK) for at in range(0, len(stance.positions), _CHUNK)]
+        return np.concatenate([self._draw_nodes(stance.at(chunk), rng) for chunk in chunks])
+
+    def _draw_nodes(self, stance: Stance, rng: np.random.Generator) -> FloatArray:
+        directions, weights, low, high = self._rays(stance, strict=False)
+        cumulative = np.cumsum(weights, axis=1)
+        chosen = (cumulative < rng.random(len(weights))[:, None]).sum(axis=1).clip(max=weights.shape[1] - 1)
+        rows = np.arange(len(weights))
+        r = rng.uniform(low[rows, chosen], high[rows, chosen])
+        return np.asarray(stance.positions + r[:, None] * unit(directions[rows, chosen]))
+
+
+def half_box(width: float, depth: float) -> tuple[float, float]:
+    """Return (half length, half width) of a box in its own frame, x to the front [m]."""
+    return 0.5 * depth, 0.5 * width
+
+

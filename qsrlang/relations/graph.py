@@ -1,0 +1,133 @@
+"""What is known of a place: classes, landmarks, and choices between constraints on ordered pairs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import TypeAlias
+
+from qsrlang.language.source import Span
+from qsrlang.language.syntax import Fit, Frame
+from qsrlang.relations.calculus import Relation
+
+
+@dataclass(frozen=True, slots=True)
+class ObjectClass:
+    """A class of objects: width (left to right), depth (front to back) and height [m], support, front."""
+
+    name: str
+    kind: str
+    width: float = 0.0
+    depth: float = 0.0
+    height: float = 0.0
+    front: bool = False
+    on: str | None = None
+
+    @property
+    def is_surface(self) -> bool:
+        """Whether its top supports things."""
+        return self.kind == "surface"
+
+
+@dataclass(frozen=True, slots=True)
+class Landmark:
+    """A named instance with a known pose: position [m], heading [rad] or None, deviations [m, m, rad]."""
+
+    name: str
+    kind: str
+    x: float
+    y: float
+    z: float | None = None
+    heading: float | None = None
+    deviation: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Statement:
+    """Where a piece of knowledge was written, and its text on one line."""
+
+    file: str
+    line: int
+    text: str
+
+    @classmethod
+    def at(cls, span: Span) -> Statement:
+        """Return the statement written at a place."""
+        return cls(span.source.name, span.line, " ".join(span.text.split()).removesuffix("."))
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}: {self.text}"
+
+
+@dataclass(frozen=True, slots=True)
+class AtomicRelation:
+    """A relation in a frame of reference."""
+
+    relation: Relation
+    frame: Frame
+
+
+@dataclass(frozen=True, slots=True)
+class Constraint:
+    """What one statement says of where `referent` lies as seen from `relatum`: atoms that all hold, or a fit."""
+
+    referent: str
+    relatum: str
+    atoms: tuple[AtomicRelation, ...]
+    statement: Statement
+    fit: Fit | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Alternative:
+    """Constraints that hold together, with their share among the alternatives of a choice."""
+
+    share: float
+    constraints: tuple[Constraint, ...]
+
+
+class Authority(IntEnum):
+    """What wins where several statements speak of one pair: shares over counts over scenes."""
+
+    SCENE = 1
+    COUNT = 2
+    SHARE = 3
+
+
+Pair: TypeAlias = tuple[str, str]
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """Exclusive alternatives for the pairs of classes it governs; shares below 1 leave the rest to `elsewhere`.
+
+    An alternative may speak of further pairs, which then hold together with it (the atoms of one scene).
+    """
+
+    authority: Authority
+    governs: frozenset[Pair]
+    alternatives: tuple[Alternative, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class RelationGraph:
+    """All that is known: an edge (referent, relatum) for every pair that a choice speaks of."""
+
+    classes: Mapping[str, ObjectClass]
+    relations: Mapping[str, Relation]
+    landmarks: tuple[Landmark, ...]
+    choices: tuple[Choice, ...]
+    reach: float
+
+    def choices_for(self, referent: str) -> tuple[Choice, ...]:
+        """Return the choices that say where `referent` is."""
+        return tuple(c for c in self.choices if any(pair[0] == referent for pair in c.governs))
+
+    def class_of(self, name: str) -> str:
+        """Return the class that a class or landmark name stands for."""
+        return next((landmark.kind for landmark in self.landmarks if landmark.name == name), name)
+
+    def instances_of(self, name: str) -> tuple[Landmark, ...]:
+        """Return the landmarks that a class or landmark name stands for."""
+        return tuple(landmark for landmark in self.landmarks if name in (landmark.name, landmark.kind))

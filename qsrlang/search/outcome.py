@@ -1,0 +1,99 @@
+"""What a search did, step by step: values with everything that a picture or a table needs."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from qsrlang.arrays import FloatArray, frozen_array
+from qsrlang.errors import ValueRangeError
+from qsrlang.geometry.pose import Pose2
+from qsrlang.search.world import Detection
+
+MAX_COUNT = 1_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """When a search gives up: time [s], poses looked from, and how many candidates are drawn for each."""
+
+    seconds: float = 120.0
+    poses: int = 20
+    candidates: int = 20
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.seconds < math.inf:
+            raise ValueRangeError("the time limit of a search", self.seconds, "a positive number of seconds")
+        for what, value in (("pose limit", self.poses), ("number of candidates", self.candidates)):
+            if not 1 <= value <= MAX_COUNT:
+                raise ValueRangeError(f"the {what} of a search", value, f"1 to {MAX_COUNT}")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SearchStep:
+    """One turn of the monitor: choose a pose, drive there, look.
+
+    Candidates (N, 3), x, y [m] and yaw [rad], and the path (L, 2) [m] are in the map frame; `values` (N,) is what
+    the planner thought each candidate worth. Travel [m], turn [rad] and seconds are of this step, `clock` is the
+    time since the search began [s]. `looked` is False where the time ran out before the look was over.
+    """
+
+    number: int
+    origin: Pose2
+    candidates: FloatArray
+    values: FloatArray
+    chosen: int
+    path: FloatArray
+    travel: float
+    turn: float
+    seconds: float
+    clock: float
+    looked: bool
+    detections: tuple[Detection, ...]
+
+    def __post_init__(self) -> None:
+        candidates = frozen_array("the candidates of a step", self.candidates, (None, 3))
+        object.__setattr__(self, "candidates", candidates)
+        object.__setattr__(self, "values", frozen_array("their values", self.values, (len(candidates),)))
+        object.__setattr__(self, "path", frozen_array("the path of a step", self.path, (None, 2)))
+        if not 0 <= self.chosen < len(candidates):
+            raise ValueRangeError("the chosen candidate", self.chosen, f"0 to {len(candidates) - 1}")
+
+    @property
+    def pose(self) -> Pose2:
+        """The pose that was chosen."""
+        x, y, yaw = self.candidates[self.chosen]
+        return Pose2(float(x), float(y), float(yaw))
+
+    @property
+    def value(self) -> float:
+        """The value of the pose that was chosen."""
+        return float(self.values[self.chosen])
+
+    @property
+    def ranking(self) -> tuple[int, ...]:
+        """The candidates from the most to the least valuable, the first drawn first among equals."""
+        return tuple(int(index) for index in np.argsort(-self.values, kind="stable"))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SearchResult:
+    """What became of a search: `seconds` is the time of the find, or the time at which the search gave up.
+
+    `poses` counts the looks, `travel` is the path driven, a last drive that ran out of time whole [m];
+    `detection` is the object found.
+    """
+
+    target: str
+    found: bool
+    seconds: float
+    poses: int
+    travel: float
+    steps: tuple[SearchStep, ...]
+    detection: Detection | None
+
+    def __post_init__(self) -> None:
+        if self.found != (self.detection is not None):
+            raise ValueRangeError("the outcome of a search", self.found, "a detection exactly where one was found")

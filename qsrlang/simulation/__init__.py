@@ -1,0 +1,1 @@
+"""A World of pybullet: rooms and voxel maps as bodies, a camera that recognises, and a robot that drives."""
