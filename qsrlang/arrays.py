@@ -14,7 +14,9 @@ IntArray: TypeAlias = npt.NDArray[np.int64]
 BoolArray: TypeAlias = npt.NDArray[np.bool_]
 
 
-def frozen_array(what: str, value: npt.ArrayLike, shape: tuple[int | None, ...], dtype: Any = np.float64) -> npt.NDArray[Any]:
+def frozen_array(
+    what: str, value: npt.ArrayLike, shape: tuple[int | None, ...], dtype: Any = np.float64
+) -> npt.NDArray[Any]:
     """Return a read-only copy of `value`; None in `shape` stands for any length.
 
     Raises ValueRangeError where the shape differs or a float is not finite.

@@ -67,7 +67,9 @@ class OutsideMapError(QSRError):
 class BlockedPoseError(QSRError):
     """A place where the robot would stand in something."""
 
-    def __init__(self, what: str, point: Sequence[float], radius: float, source: str, nearest: Sequence[float]) -> None:
+    def __init__(
+        self, what: str, point: Sequence[float], radius: float, source: str, nearest: Sequence[float]
+    ) -> None:
         self.what, self.point, self.radius, self.source = what, tuple(point), radius, source
         self.nearest = tuple(nearest)
         super().__init__(
@@ -104,7 +106,9 @@ class MissingFacingError(QSRError):
 
     def __init__(self, landmark: str, need: str) -> None:
         self.landmark, self.need = landmark, need
-        super().__init__(f"landmark '{landmark}' has no heading, which {need} needs; add 'facing … deg' to it")
+        super().__init__(
+            f"landmark '{landmark}' has no heading, which {need} needs; add 'facing … deg' to it"
+        )
 
 
 class NoRoomError(QSRError):
@@ -112,7 +116,9 @@ class NoRoomError(QSRError):
 
     def __init__(self, what: str, support: str) -> None:
         self.what, self.support = what, support
-        super().__init__(f"{what}: no room is left on {support}; check the poses and sizes or use another relation")
+        super().__init__(
+            f"{what}: no room is left on {support}; check the poses and sizes or use another relation"
+        )
 
 
 class TooManyWorldsError(QSRError):

@@ -27,7 +27,9 @@ def resource_path(name: str, *parts: str) -> Path:
     """Return the path of one shipped file, such as `resource_path("knowledge", "core.qsr")`."""
     path = resource_root(name).joinpath(*parts)
     if not path.is_file():
-        raise FileError(path, "no such file is shipped", f"the folder holds {', '.join(_listing(path.parent))}")
+        raise FileError(
+            path, "no such file is shipped", f"the folder holds {', '.join(_listing(path.parent))}"
+        )
     return path
 
 

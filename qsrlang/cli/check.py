@@ -15,7 +15,9 @@ def check(file: KnowledgeFile, output: OutputFormat = Format.TEXT) -> None:
     """Check a .qsr file and all it imports; every mistake is told at once."""
     built = build_graph(read_source(find_knowledge(file)))
     if output is Format.JSON:
-        typer.echo(json.dumps([finding.to_json() for finding in built.diagnostics], ensure_ascii=False, indent=2))
+        typer.echo(
+            json.dumps([finding.to_json() for finding in built.diagnostics], ensure_ascii=False, indent=2)
+        )
     else:
         for finding in built.diagnostics:
             typer.echo(finding.render() + "\n", err=finding.is_error)

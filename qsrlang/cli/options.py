@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from enum import Enum
+from enum import StrEnum
 from typing import Annotated
 
 import typer
 
 
-class Format(str, Enum):
+class Format(StrEnum):
     """How an answer is printed."""
 
     TEXT = "text"
@@ -16,14 +16,18 @@ class Format(str, Enum):
 
 
 KnowledgeFile = Annotated[
-    str, typer.Argument(metavar="FILE", help="A shipped name such as office/desk, or a path that ends in .qsr.")
+    str,
+    typer.Argument(metavar="FILE", help="A shipped name such as office/desk, or a path that ends in .qsr."),
 ]
 Query = Annotated[str, typer.Argument(metavar="QUERY", help="For instance: where Cup wrt Keyboard?")]
 Landmarks = Annotated[
     list[str] | None,
-    typer.Option("--landmark", help="A further landmark: 'monitor-1 : Monitor at (0 m, 0 m) facing -90 deg'."),
+    typer.Option(
+        "--landmark", help="A further landmark: 'monitor-1 : Monitor at (0 m, 0 m) facing -90 deg'."
+    ),
 ]
 Viewer = Annotated[
-    str | None, typer.Option(help="Where the viewer stands: '1.2 m, 0.5 m'; without it, before the landmark's front.")
+    str | None,
+    typer.Option(help="Where the viewer stands: '1.2 m, 0.5 m'; without it, before the landmark's front."),
 ]
 OutputFormat = Annotated[Format, typer.Option("--format", help="How the answer is printed.")]

@@ -23,4 +23,6 @@ def plot(
     known = qsr.load(file).with_landmarks(*(landmark or ()))
     answer = known.ask(query, viewer=viewer_pose(viewer))
     written = qsr.save_figure(qsr.draw_answer(answer, known), picture)
-    typer.echo(f"{written}: where {answer.target}, {len(answer.components)} components, frame: {answer.frame}")
+    typer.echo(
+        f"{written}: where {answer.target}, {len(answer.components)} components, frame: {answer.frame}"
+    )

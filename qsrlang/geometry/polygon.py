@@ -26,7 +26,9 @@ class ConvexPolygon:
         following = np.roll(edges, -1, axis=0)
         turns = edges[:, 0] * following[:, 1] - edges[:, 1] * following[:, 0]
         if len(corners) < 3 or not (turns >= 0.0).all() or not (turns > 0.0).any():
-            raise ValueRangeError("a polygon", corners.tolist(), "at least 3 corners, convex, counter-clockwise")
+            raise ValueRangeError(
+                "a polygon", corners.tolist(), "at least 3 corners, convex, counter-clockwise"
+            )
 
     @classmethod
     def rectangle(cls, pose: Pose2, length: float, width: float) -> ConvexPolygon:
@@ -50,7 +52,9 @@ class ConvexPolygon:
         """Return which points (..., 2) lie inside or on the border: (...,)."""
         return np.asarray((self.signed_distances(points) >= 0.0).all(axis=-1))
 
-    def ray_lengths(self, origins: npt.ArrayLike, directions: npt.ArrayLike, margins: npt.ArrayLike = 0.0) -> FloatArray:
+    def ray_lengths(
+        self, origins: npt.ArrayLike, directions: npt.ArrayLike, margins: npt.ArrayLike = 0.0
+    ) -> FloatArray:
         """Return how far each ray from inside runs to the border: (...,) [m].
 
         Origins and unit directions broadcast over (..., 2). `margins` (..., K) moves each edge inwards.
@@ -58,7 +62,7 @@ class ConvexPolygon:
         """
         slack = self.signed_distances(origins) - np.asarray(margins, dtype=np.float64)
         speed = -np.asarray(directions, dtype=np.float64) @ self.normals.T
-        with np.errstate(divide="ignore", invalid="ignore"):
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             lengths = np.where(speed > 0.0, slack / speed, np.inf)
         return np.asarray(lengths.min(axis=-1))
 

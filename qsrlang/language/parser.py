@@ -20,6 +20,7 @@ from qsrlang.resources import resource_path
 
 LANGUAGE_VERSION = 1
 MAX_NESTING = 100
+_MAX_EXPECTED = 14
 
 _MARK = re.compile(r'"[^"\n]*"|#[^\n]*|\d+\.\d+|[().?]')
 _WORDS = {
@@ -81,12 +82,15 @@ def parse_source(source: Source) -> Parsed:
 
 def parse_query(text: str) -> Where:
     """Parse one query, such as `where Cup?`; the question mark may be left out."""
-    return _parse_alone(text if text.rstrip().endswith("?") else text.rstrip() + "?", "query", "<query>")
+    closed = text if text.rstrip().endswith("?") else text.rstrip() + "?"
+    query: Where = _parse_alone(closed, "query", "<query>")
+    return query
 
 
 def parse_landmark(text: str) -> Landmark:
     """Parse one landmark, such as `monitor-1 : Monitor at (0 m, 0 m) facing -90 deg`."""
-    return _parse_alone(text.strip().removesuffix("."), "landmark_body", "<landmark>")
+    landmark: Landmark = _parse_alone(text.strip().removesuffix("."), "landmark_body", "<landmark>")
+    return landmark
 
 
 def parse_place(text: str) -> tuple[float, float]:
@@ -157,25 +161,30 @@ def _parse_span(source: Source, span: Span, depth: int, rule: str) -> Any:
 
 
 def _explain(source: Source, span: Span, error: UnexpectedInput) -> Diagnostic:
-    if isinstance(error, UnexpectedToken) and error.token.type != "$END":
-        start = error.token.start_pos or span.start
-        found, length = f"'{error.token}'", len(error.token)
-        expected = set(error.accepts or error.expected)
-    elif isinstance(error, UnexpectedCharacters):
-        start, length = error.pos_in_stream, 1
-        found, expected = f"'{source.text[start]}'", set(error.allowed or ())
+    if isinstance(error, UnexpectedCharacters):
+        start, length, expected = error.pos_in_stream or span.start, 1, set(error.allowed or ())
+        found = f"'{source.text[start]}'"
+    elif isinstance(error, UnexpectedToken) and error.token.type != "$END":
+        start, length, expected = (
+            error.token.start_pos or span.start,
+            len(error.token),
+            set(error.accepts or ()),
+        )
+        found = f"'{error.token}'"
     else:
-        start, length, found = max(span.start, span.end - 1), 1, "the end of the text"
-        expected = set(getattr(error, "accepts", None) or getattr(error, "expected", ()))
+        start, length, expected = max(span.start, span.end - 1), 1, set(getattr(error, "accepts", None) or ())
+        found = "the end of the text"
     place = Span(source, start, min(start + length, max(span.end, start + 1)))
     words = sorted({_WORDS.get(name, f"'{name.lower()}'") for name in expected - {"$END"}})
-    note = f"expected {', '.join(words)}" if 0 < len(words) <= 14 else ""
+    note = f"expected {', '.join(words)}" if 0 < len(words) <= _MAX_EXPECTED else ""
     return Diagnostic("Q101", f"unexpected {found}", place, note, _remedy(found, expected))
 
 
 def _remedy(found: str, expected: set[str]) -> str:
     if found in ("'?'", "'where'"):
-        return "a file states what is known and ends statements with '.'; ask queries with 'qsr ask FILE QUERY'"
+        return (
+            "a file states what is known and ends statements with '.'; ask queries with 'qsr ask FILE QUERY'"
+        )
     if "DOT" in expected:
         return "a statement ends with '.'"
     return ""

@@ -235,7 +235,16 @@ class Defaults(Node):
 
 
 Statement: TypeAlias = (
-    Language | Import | Declaration | Landmark | Scene | Believe | Observe | ObserveScene | Relation | Defaults
+    Language
+    | Import
+    | Declaration
+    | Landmark
+    | Scene
+    | Believe
+    | Observe
+    | ObserveScene
+    | Relation
+    | Defaults
 )
 
 

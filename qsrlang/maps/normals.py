@@ -1,4 +1,4 @@
-"""Which occupied voxels face up: by marching-cubes normals, or by principal components of their neighbours."""
+"""Which occupied voxels face up: by marching-cubes normals, or by principal components of neighbours."""
 
 from __future__ import annotations
 
@@ -22,11 +22,13 @@ _Edge = tuple[int, int]
 
 
 def mean_normals(grid: VoxelGrid, indices: IntArray, unknown_is_occupied: bool = True) -> FloatArray:
-    """Return the mean unit normal (K, 3) of the marching-cubes triangles around voxels (K, 3), zero without any.
+    """Return the mean unit normal (K, 3) of the marching-cubes triangles around voxels (K, 3), else zero.
 
     The triangles are those of the eight cubes whose corners are the centres of the voxel and of its 26
-    neighbours, vertices half-way along the edges, normals towards free space (OctoMap's getNormals, with
-    `unknown_is_occupied` its unknownStatus). The triangles come from `cube_normals`, not from a printed table.
+    neighbours, vertices half-way along the edges, normals towards free space, as in OctoMap's getNormals
+    (`unknown_is_occupied` is its unknownStatus). Two differences: the triangles come from `cube_normals`, not
+    from a printed table, so some loops are fanned otherwise; and all eight cubes count, where OctoMap stops
+    at the first one without a surface.
     """
     solid = grid.voxels == Cell.OCCUPIED
     if unknown_is_occupied:
@@ -37,26 +39,28 @@ def mean_normals(grid: VoxelGrid, indices: IntArray, unknown_is_occupied: bool =
 
 
 def facing_up(grid: VoxelGrid, indices: IntArray, max_tilt: float) -> BoolArray:
-    """Return which occupied voxels (K, 3) lie on a plane within `max_tilt` [rad] of the horizontal, seen from above.
+    """Return which occupied voxels (K, 3) lie on a plane within `max_tilt` [rad] of level, seen from above.
 
-    The plane is that of the least principal component of the NEIGHBOURS nearest occupied voxels (all those that
-    tie with the last, none beyond REACH voxels). Its free side is up where nothing lies directly above the voxel
-    and one of the nine voxels above was seen free; so a thin board counts though it is free from below, too.
+    The plane is that of the least principal component of the NEIGHBOURS nearest occupied voxels (all that tie
+    with the last, none beyond REACH voxels). Its free side is up where nothing lies directly above the voxel
+    and one of the nine voxels above was seen free; so a thin board counts though it is free below, too.
+    At the rim of a plane the components mix it with the wall or front beside it, so a voxel with its free
+    side up that touches a voxel of the plane in its own layer belongs to the plane.
     """
     voxels = np.pad(grid.voxels, REACH, constant_values=Cell.UNKNOWN)
     covariances, faces = _scatter(voxels, np.ascontiguousarray(indices) + REACH, *_shells())
     upright = np.zeros(len(indices), dtype=bool)
     least = np.linalg.eigh(covariances[faces])[1][:, :, 0]
     upright[faces] = np.abs(least[:, 2]) >= math.cos(max_tilt)
-    return upright
+    return np.asarray(_with_rims(grid.voxels.shape, np.ascontiguousarray(indices), faces, upright))
 
 
 @cache
 def cube_normals() -> tuple[FloatArray, IntArray]:
     """Return for the 256 cubes the sum of unit triangle normals (256, 3) and the number of triangles (256,).
 
-    Bit c of a cube's number tells whether corner c, at (c >> 2 & 1, c >> 1 & 1, c & 1), is solid. On each face
-    the surface cuts off every run of solid corners (so two solid corners across a face are separate); the cuts
+    Bit c of a cube's number tells whether corner c, at (c >> 2 & 1, c >> 1 & 1, c & 1), is solid. On each
+    face the surface cuts off every run of solid corners (so two across the diagonal are separate); the cuts
     of all faces close into loops, and every loop is a fan of triangles from its first vertex.
     """
     sums, counts = np.zeros((256, 3)), np.zeros(256, dtype=np.int64)
@@ -150,3 +154,15 @@ def _scatter(voxels, indices, offsets, squares):  # type: ignore[no-untyped-def]
     return covariances, faces
 
 
+@njit(cache=True)
+def _with_rims(shape, indices, faces, upright):  # type: ignore[no-untyped-def]
+    plane = np.zeros((shape[0] + 2, shape[1] + 2, shape[2]), dtype=np.bool_)
+    whole = upright.copy()
+    for n in range(len(indices)):
+        x, y, z = indices[n]
+        plane[x + 1, y + 1, z] = upright[n]
+    for n in range(len(indices)):
+        if faces[n] and not upright[n]:
+            x, y, z = indices[n]
+            whole[n] = plane[x : x + 3, y : y + 3, z].any()
+    return whole

@@ -145,9 +145,9 @@ def spread(open_cells, moves, start, goal):  # type: ignore[no-untyped-def]
     """Return lengths (H W,) from the flat cell `start` and each cell's parent (H W,), -1 where there is none.
 
     Lazy Theta* (Nash et al. 2010), ordered towards the flat cell `goal` and ended there, or spread everywhere
-    where `goal` is negative: a cell first takes the parent of the cell it was reached from; when its turn
-    where `goal` is negative. A cell first takes the parent of the cell it was reached from; when its turn comes
-    is never above the 8-connected one, and the line from a finished cell to its parent is always clear.
+    where `goal` is negative. A cell first takes the parent of the cell it was reached from; where that parent
+    is out of sight when its turn comes, it takes its best finished neighbour and waits again. So a length is
+    never above the 8-connected one, and the line from a finished cell to its parent is always clear.
     """
     width = open_cells.shape[1]
     lengths, parents = np.full(len(moves), math.inf), np.full(len(moves), -1, dtype=np.int32)

@@ -20,7 +20,7 @@ MAX_TILT = math.pi / 8.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Supports:
-    """Voxels of supporting planes: `centres` (K, 3) in the map frame [m], the index `part` (K,) of each, `names` (P,).
+    """Voxels of supporting planes: `centres` (K, 3), map frame [m], the `part` (K,) of each, `names` (P,).
 
     Parts are numbered and named by size, the largest "support-1"; the voxels of a part stand together.
     """
@@ -33,11 +33,11 @@ class Supports:
         object.__setattr__(self, "centres", frozen_array("the centres of supports", self.centres, (None, 3)))
         part = frozen_array("the parts of supports", self.part, (len(self.centres),), np.int64)
         object.__setattr__(self, "part", part)
-        if len(part) and not (0 <= part.min() and part.max() < len(self.names)):
+        if len(part) and (part.min() < 0 or part.max() >= len(self.names)):
             raise ValueRangeError("a part of supports", part.max(), f"0 to {len(self.names) - 1}")
 
     def centres_of(self, name: str) -> FloatArray:
-        """Return the voxel centres (K, 3) of the support called `name` [m]; UnknownNameError where none is."""
+        """Return the voxel centres (K, 3) of the support `name` [m]; raises UnknownNameError without it."""
         if name not in self.names:
             raise UnknownNameError("support", name, self.names)
         return np.asarray(self.centres[self.part == self.names.index(name)])
@@ -53,9 +53,9 @@ def find_supports(
 ) -> Supports:
     """Return the voxels on which things can stand, in connected parts (26 neighbours), the largest first.
 
-    `pca`: occupied voxels with free space above on a plane that principal components put within `max_tilt` [rad]
-    of the horizontal. `mean-normal`: occupied voxels whose mean marching-cubes normal is within `max_tilt` of the
-    vertical, unknown space counted as occupied (Kunze et al. 2014).
+    `pca`: occupied voxels with free space above on a plane that principal components put within `max_tilt`
+    [rad] of level. `mean-normal`: occupied voxels whose mean marching-cubes normal is within `max_tilt` of
+    the vertical, unknown space counted as occupied (Kunze et al. 2014).
     `min_height` and `max_height` bound the centres' z in the map frame [m]; parts of fewer than `min_part`
     voxels are left out. The result is empty where nothing is left.
     Raises UnknownNameError for another method and ValueRangeError for a tilt outside 0 to pi/2.

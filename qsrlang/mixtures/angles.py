@@ -77,5 +77,6 @@ def terms(densities: tuple[Density | None, ...]) -> list[tuple[float, tuple[Bump
     if count > MAX_TERMS:
         raise ValueRangeError("the number of terms in a product of mixtures", count, f"at most {MAX_TERMS}")
     return [
-        (math.prod(weight for weight, _ in chosen), tuple(bump for _, bump in chosen)) for chosen in product(*sums)
+        (math.prod(weight for weight, _ in chosen), tuple(bump for _, bump in chosen))
+        for chosen in product(*sums)
     ]

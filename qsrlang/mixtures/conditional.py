@@ -102,7 +102,9 @@ class FitConditional:
         """Return mean (P, 2) and covariance (P, 2, 2) of x."""
         basis = self._basis(states)
         positions = states[:, self.view.relatum][:, :2]
-        return positions + basis @ np.array(self.fit.mean), basis @ self._covariance() @ basis.transpose(0, 2, 1)
+        return positions + basis @ np.array(self.fit.mean), basis @ self._covariance() @ basis.transpose(
+            0, 2, 1
+        )
 
     def sample(self, states: FloatArray, rng: np.random.Generator) -> FloatArray:
         """Return one draw (P, 2) from each state."""
@@ -139,9 +141,13 @@ def polar_density(
     frames = tuple(atom.frame for atom in turning) or (Frame.RELATIVE,)
     angles = tuple(atom.relation.angle for atom in turning) or (None,)
     distances = tuple(a.relation.distance for a in constraint.atoms if a.relation.distance is not None)
-    referent, relatum = (graph.classes[graph.class_of(name)] for name in (constraint.referent, constraint.relatum))
+    referent, relatum = (
+        graph.classes[graph.class_of(name)] for name in (constraint.referent, constraint.relatum)
+    )
     on_relatum = support is not None and constraint.relatum in (support.name, support.kind)
-    boxes = Boxes(half_box(referent.width, referent.depth), half_box(relatum.width, relatum.depth), on_relatum)
+    boxes = Boxes(
+        half_box(referent.width, referent.depth), half_box(relatum.width, relatum.depth), on_relatum
+    )
     outline = None if support is None else outline_of(graph.classes[support.kind])
     hands = tuple(hand(frame) for frame in frames)
     what = constraint.statement.text

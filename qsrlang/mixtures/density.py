@@ -223,5 +223,3 @@ class PolarDensity:
 def half_box(width: float, depth: float) -> tuple[float, float]:
     """Return (half length, half width) of a box in its own frame, x to the front [m]."""
     return 0.5 * depth, 0.5 * width
-
-

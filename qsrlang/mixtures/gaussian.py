@@ -33,7 +33,9 @@ class GaussianMixture:
         means = frozen_array("mixture means", self.means, (len(weights), 2))
         covariances = frozen_array("mixture covariances", self.covariances, (len(weights), 2, 2))
         if len(weights) == 0 or (weights < 0.0).any() or abs(float(weights.sum()) - 1.0) > 1e-9:
-            raise ValueRangeError("the sum of mixture weights", float(weights.sum()), "1, of weights of at least 0")
+            raise ValueRangeError(
+                "the sum of mixture weights", float(weights.sum()), "1, of weights of at least 0"
+            )
         symmetric = np.allclose(covariances, covariances.transpose(0, 2, 1), rtol=1e-9, atol=1e-15)
         if not symmetric or (np.linalg.eigvalsh(covariances) <= 0.0).any():
             raise ValueRangeError("a covariance", covariances.tolist(), "symmetric and positive definite")

@@ -82,7 +82,9 @@ class JointGaussian:
         roots = (vectors[:, keep] * np.sqrt(values[keep] * keep.sum())).T
         return np.concatenate([self.mean + roots, self.mean - roots])
 
-    def _extended(self, name: str, mean: FloatArray, cross: FloatArray, covariance: FloatArray) -> JointGaussian:
+    def _extended(
+        self, name: str, mean: FloatArray, cross: FloatArray, covariance: FloatArray
+    ) -> JointGaussian:
         size = len(self.mean)
         blocks = {**self.blocks, name: slice(size, size + len(mean))}
         full = np.block([[self.covariance, cross.T], [cross, covariance]])

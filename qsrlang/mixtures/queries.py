@@ -81,7 +81,9 @@ class KnowledgeBase:
         if engine not in ENGINES:
             raise UnknownNameError("engine", engine, ENGINES)
         if engine == "sampling" and (rng is None or samples < 2):
-            raise ValueRangeError("the sampling engine's rng and samples", (rng, samples), "a generator and at least 2")
+            raise ValueRangeError(
+                "the sampling engine's rng and samples", (rng, samples), "a generator and at least 2"
+            )
         known = self.with_landmarks(*_instances(landmarks or {}))
         relata = [wrt] if wrt else ([] if known.graph.landmarks else _starts(known.graph, target))
         if not relata:
@@ -96,11 +98,12 @@ class KnowledgeBase:
         viewer: Pose2 | None = None,
         engine: str = "exact",
         samples: int = DEFAULT_SAMPLES,
-        rng: np.random.Generator | None = None,
+        seed: int = 0,
     ) -> Where:
         """Answer a query written in the language, such as `where Cup?` or `where Cup wrt Keyboard?`."""
         parsed: WhereQuery = parse_query(query)
         wrt = parsed.relatum.text if parsed.relatum else None
+        rng = np.random.default_rng(seed) if engine == "sampling" else None
         return self.where(parsed.target.text, wrt=wrt, viewer=viewer, engine=engine, samples=samples, rng=rng)
 
     def _check_class(self, name: str) -> None:
@@ -141,7 +144,9 @@ def _starts(graph: RelationGraph, target: str) -> list[str]:
     starts, waiting, seen = [], [target], {target}
     while waiting:
         name = waiting.pop(0)
-        relata = sorted({pair[1] for choice in graph.choices_for(name) for pair in choice.governs if pair[0] == name})
+        relata = sorted(
+            {pair[1] for choice in graph.choices_for(name) for pair in choice.governs if pair[0] == name}
+        )
         if not relata and name != target:
             starts.append(name)
         waiting += [relatum for relatum in relata if relatum not in seen]

@@ -10,7 +10,14 @@ import numpy as np
 from qsrlang.arrays import FloatArray
 from qsrlang.errors import UnreachedTargetError
 from qsrlang.geometry.pose import Pose2
-from qsrlang.mixtures.conditional import Conditional, FitConditional, PolarConditional, View, polar_density, support_of
+from qsrlang.mixtures.conditional import (
+    Conditional,
+    FitConditional,
+    PolarConditional,
+    View,
+    polar_density,
+    support_of,
+)
 from qsrlang.mixtures.joint import JointGaussian
 from qsrlang.mixtures.worlds import World
 from qsrlang.relations.graph import Constraint, Landmark, RelationGraph
@@ -54,7 +61,7 @@ class Placement:
 def plan_world(graph: RelationGraph, world: World, target: str) -> Plan | None:
     """Return how a world places the target, or None where no chain of it reaches a landmark."""
     roots = world.landmarks
-    waiting = sorted(world.constraints, key=lambda c: (c.referent, c.relatum))
+    waiting = _towards(target, sorted(world.constraints, key=lambda c: (c.referent, c.relatum)))
     steps: list[Step] = []
     while True:
         ready = [c for c in waiting if c.relatum in roots and c.referent not in world.landmarks]
@@ -72,6 +79,17 @@ def plan_world(graph: RelationGraph, world: World, target: str) -> Plan | None:
     known = [*world.landmarks.values(), *(step.support for step in steps if step.support)]
     block = world.landmarks[target].name if target in world.landmarks else target
     return Plan(tuple({landmark.name: landmark for landmark in known}.values()), tuple(steps), block)
+
+
+def _towards(target: str, constraints: list[Constraint]) -> list[Constraint]:
+    """Return the constraints that help to place the target: its own, its relata's, and so on."""
+    needed, waiting = {target}, [target]
+    while waiting:
+        name = waiting.pop()
+        relata = {c.relatum for c in constraints if c.referent == name} - needed
+        needed |= relata
+        waiting += relata
+    return [c for c in constraints if c.referent in needed]
 
 
 def place_exactly(graph: RelationGraph, plan: Plan, viewer: Pose2 | None) -> Placement:
@@ -109,7 +127,9 @@ def place_by_sampling(
             states = _append(states, blocks, referent, conditional.sample(states, rng))
         else:
             with np.errstate(divide="ignore"):
-                logs += np.log(conditional.pdf(states[:, blocks[referent]], states) * math.pi * graph.reach**2)
+                logs += np.log(
+                    conditional.pdf(states[:, blocks[referent]], states) * math.pi * graph.reach**2
+                )
     if not np.isfinite(logs).any():
         raise UnreachedTargetError(plan.target, ["its statements contradict each other in every sample"])
     weights = np.exp(logs - logs.max())
@@ -120,7 +140,9 @@ def place_by_sampling(
     return Placement(mean, _definite(covariance), evidence, _used(plan))
 
 
-def make_conditional(graph: RelationGraph, step: Step, blocks: dict[str, slice], viewer: Pose2 | None) -> Conditional:
+def make_conditional(
+    graph: RelationGraph, step: Step, blocks: dict[str, slice], viewer: Pose2 | None
+) -> Conditional:
     """Return what a step's constraint says of its referent, given states stacked as `blocks` tell."""
     constraint, root, relatum = step.constraint, step.root, blocks[step.relatum]
     own_heading = step.relatum == root.name and root.heading is not None
@@ -145,7 +167,9 @@ def _append(states: FloatArray, blocks: dict[str, slice], name: str, draws: Floa
 def _definite(covariance: FloatArray) -> FloatArray:
     """A landmark known to the millimetre has no spread to speak of; a Gaussian needs some."""
     symmetric = 0.5 * (covariance + covariance.T)
-    return symmetric if np.linalg.eigvalsh(symmetric).min() > 0.0 else symmetric + MIN_DEVIATION**2 * np.eye(2)
+    return (
+        symmetric if np.linalg.eigvalsh(symmetric).min() > 0.0 else symmetric + MIN_DEVIATION**2 * np.eye(2)
+    )
 
 
 def _used(plan: Plan) -> tuple[Constraint, ...]:

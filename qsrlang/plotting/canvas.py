@@ -20,11 +20,14 @@ SUFFIXES = (".pdf", ".png", ".svg")
 MAX_EXTENT = 1e5
 """The longest side of a picture's ground [m]."""
 
-_LEFT, _BOTTOM, _TOP, _RIGHT = 0.50, 0.45, 0.30, 0.12
+_LEFT, _BOTTOM, _TOP, _RIGHT = 0.50, 0.45, 0.12, 0.12
+_CAPTION_LINE = 0.17
 _BAR_COLUMN = 0.80
 _BAR_WIDTH, _BAR_HEIGHT, _BAR_GAP = 0.11, 1.15, 0.50
 _HEIGHT_LIMIT = 7.2
+_LONGEST_ASPECT = 5.0
 _CAPTION_WIDTH = 5.0
+_PACKING = 4
 _UNDATED = {".pdf": {"CreationDate": None}, ".svg": {"Date": None}, ".png": {"Software": None}}
 
 
@@ -39,16 +42,19 @@ class Ground:
 
     @classmethod
     def around(cls, points: FloatArray, margin: float) -> Ground:
-        """Return the box around points (N, 2) with a margin on every side [m]."""
-        (x0, y0), (x1, y1) = points.min(axis=0) - margin, points.max(axis=0) + margin
+        """Return the box around points (N, 2) with a margin [m], no side below a fifth of the other."""
+        low, high = points.min(axis=0) - margin, points.max(axis=0) + margin
+        side = high - low
+        half = 0.5 * np.maximum(side, side.max() / _LONGEST_ASPECT)
+        middle = 0.5 * (low + high)
+        (x0, y0), (x1, y1) = middle - half, middle + half
         return cls(float(x0), float(x1), float(y0), float(y1))
 
     def __post_init__(self) -> None:
+        expected = f"above 0 and at most {MAX_EXTENT:g} m"
         for side in (self.x_max - self.x_min, self.y_max - self.y_min):
             if not 0.0 < side <= MAX_EXTENT:
-                raise ValueRangeError(
-                    "a side of the ground of a picture", side, f"above 0 and at most {MAX_EXTENT:g} m"
-                )
+                raise ValueRangeError("a side of the ground of a picture", side, expected)
 
 
 def new_figure(width: float, height: float) -> Figure:
@@ -61,7 +67,7 @@ def new_figure(width: float, height: float) -> Figure:
 def plane_figure(ground: Ground, *, frame: str, caption_lines: int = 0, bars: int = 0) -> tuple[Figure, Axes]:
     """Return a figure and axes in metres, of equal aspect, with room for caption lines and colour bars."""
     right = _BAR_COLUMN if bars else _RIGHT
-    top = _TOP * 0.4 + 0.17 * caption_lines
+    top = _TOP + _CAPTION_LINE * caption_lines
     wide, high = ground.x_max - ground.x_min, ground.y_max - ground.y_min
     scale = min((style.FIGURE_WIDTH - _LEFT - right) / wide, _HEIGHT_LIMIT / high)
     height = max(scale * high, bars * (_BAR_HEIGHT + _BAR_GAP))
@@ -94,11 +100,11 @@ def save_figure(figure: Figure, path: Path | str) -> Path:
     path = Path(path)
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
-        raise FileError(
-            path, "pictures are not written in this format", f"end the name in {', '.join(SUFFIXES)}"
-        )
+        remedy = f"end the name in {', '.join(SUFFIXES)}"
+        raise FileError(path, "pictures are not written in this format", remedy)
     drawn = BytesIO()
-    figure.savefig(drawn, format=suffix[1:], metadata=_UNDATED[suffix])
+    packing = {"compress_level": _PACKING} if suffix == ".png" else None
+    figure.savefig(drawn, format=suffix[1:], metadata=_UNDATED[suffix], pil_kwargs=packing)
     try:
         _replace(path, drawn.getvalue())
     except (OSError, ValueError) as error:

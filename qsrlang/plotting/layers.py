@@ -31,7 +31,7 @@ _GREYS = ListedColormap([style.CELL_GREYS[cell] for cell in sorted(Cell)])
 _SAMPLES_PER_CELL = 3
 _MAX_SAMPLES = 1600
 _SAME_PLACE = 1e-6
-_ARROWHEAD = Path([[1.0, 0.0], [-0.8, 0.7], [-0.45, 0.0], [-0.8, -0.7], [1.0, 0.0]], closed=True)
+_ARROWHEAD = Path([[1.0, 0.0], [-0.75, 0.75], [-0.5, 0.0], [-0.75, -0.75], [1.0, 0.0]], closed=True)
 _DISC = 5.0
 _TICK = 7.0
 
@@ -42,17 +42,13 @@ def add_grid(axes: Axes, occupancy: OccupancyGrid) -> AxesImage:
     origin, size = occupancy.origin, occupancy.resolution
     if origin.yaw == 0.0:
         extent = (origin.x, origin.x + width * size, origin.y, origin.y + height * size)
-        return _add_image(axes, _GREYS(occupancy.cells), extent, zorder=0.0)
+        return _add_image(axes, _GREYS(occupancy.cells, bytes=True), extent, zorder=0.0)
     (x0, x1), (y0, y1) = axes.get_xlim(), axes.get_ylim()
-    places = np.stack(
-        np.meshgrid(
-            *(cell_centres(*side, _sample_count(side, size)) for side in (axes.get_xlim(), axes.get_ylim()))
-        ),
-        axis=-1,
-    )
+    x, y = (cell_centres(low, high, _sample_count(high - low, size)) for low, high in ((x0, x1), (y0, y1)))
+    places = np.stack(np.meshgrid(x, y), axis=-1)
     covered, cells = occupancy.covers(places), occupancy.cells_of(places)
-    picture = np.zeros((*covered.shape, 4))
-    picture[covered] = _GREYS(occupancy.cells[cells[covered, 0], cells[covered, 1]])
+    picture = np.zeros((*covered.shape, 4), dtype=np.uint8)
+    picture[covered] = _GREYS(occupancy.cells[cells[covered, 0], cells[covered, 1]], bytes=True)
     return _add_image(axes, picture, (x0, x1, y0, y1), zorder=0.0)
 
 
@@ -71,12 +67,11 @@ def add_voxels(
     cells = np.rint((centres[:, :2] - low) / size).astype(np.int64)
     width, height = cells.max(axis=0) + 1
     if max(width, height) > MAX_LATTICE:
-        raise ValueRangeError(
-            "the side of a picture of voxels", int(max(width, height)), f"at most {MAX_LATTICE}"
-        )
-    picture = np.zeros((height, width, 4))
+        longest = int(max(width, height))
+        raise ValueRangeError("the side of a picture in voxels", longest, f"at most {MAX_LATTICE}")
+    picture = np.zeros((height, width, 4), dtype=np.uint8)
     upwards = np.argsort(order, kind="stable")
-    picture[cells[upwards, 1], cells[upwards, 0]] = colours[upwards]
+    picture[cells[upwards, 1], cells[upwards, 0]] = np.rint(255.0 * colours[upwards])
     corner = low - 0.5 * size
     extent = (corner[0], corner[0] + width * size, corner[1], corner[1] + height * size)
     return _add_image(axes, picture, extent, zorder=1.0)
@@ -97,11 +92,9 @@ def add_ellipses(axes: Axes, means: FloatArray, covariances: FloatArray, *, widt
 def add_supports(axes: Axes, outlines: Iterable[ConvexPolygon]) -> None:
     """Draw the outlines of supports."""
     for outline in outlines:
-        axes.add_patch(
-            Polygon(
-                outline.corners, closed=True, fill=False, edgecolor=style.SUPPORT, linewidth=1.0, zorder=2.0
-            )
-        )
+        line = Polygon(outline.corners, closed=True, fill=False, linewidth=1.0, zorder=2.0)
+        line.set(edgecolor=style.SUPPORT, gid="support")
+        axes.add_patch(line)
 
 
 def add_landmarks(axes: Axes, labels: Labels, landmarks: Iterable[Landmark]) -> None:
@@ -112,11 +105,10 @@ def add_landmarks(axes: Axes, labels: Labels, landmarks: Iterable[Landmark]) -> 
         labels.keep_clear([[mark.x, mark.y]], 0.6 * _DISC)
         if mark.heading is not None:
             dx, dy = (float(part) for part in _TICK * unit(mark.heading))
-            place = (mark.x, mark.y)
             tick = axes.annotate(
-                "", place, (dx, dy), textcoords="offset points", arrowprops=stroke, zorder=6.0
+                "", (mark.x, mark.y), (dx, dy), textcoords="offset points", arrowprops=stroke
             )
-            tick.set_gid("heading")
+            tick.set(zorder=6.0, gid="heading")
 
 
 def name_landmarks(labels: Labels, landmarks: Iterable[Landmark]) -> None:
@@ -135,8 +127,8 @@ def add_robot(axes: Axes, pose: npt.ArrayLike, *, size: float, filled: bool = Tr
     """Draw a robot's pose (3,) of x, y [m] and yaw [rad] as an arrowhead of `size` typographic points."""
     x, y, yaw = np.asarray(pose, dtype=np.float64)
     head = _ARROWHEAD.transformed(Affine2D().rotate(float(yaw)))
-    face = style.INK if filled else "white"
-    axes.plot(x, y, marker=head, ms=size, mfc=face, mec=style.INK, mew=0.9, zorder=7.0, gid="robot")
+    face, edge = (style.INK, "white") if filled else ("white", style.INK)
+    axes.plot(x, y, marker=head, ms=size, mfc=face, mec=edge, mew=0.7, zorder=7.0, gid="robot")
 
 
 def add_outlines(
@@ -160,12 +152,12 @@ def cell_centres(low: float, high: float, count: int) -> FloatArray:
     return np.asarray(low + (np.arange(count) + 0.5) * (high - low) / count)
 
 
-def _sample_count(side: tuple[float, float], size: float) -> int:
-    return int(min(_MAX_SAMPLES, np.ceil(_SAMPLES_PER_CELL * (side[1] - side[0]) / size)))
+def _sample_count(side: float, size: float) -> int:
+    return int(min(_MAX_SAMPLES, np.ceil(_SAMPLES_PER_CELL * side / size)))
 
 
 def _add_image(
-    axes: Axes, picture: FloatArray, extent: tuple[float, float, float, float], zorder: float
+    axes: Axes, picture: npt.NDArray[np.uint8], extent: tuple[float, float, float, float], zorder: float
 ) -> AxesImage:
     image = AxesImage(axes, interpolation="nearest", origin="lower", extent=extent, zorder=zorder)
     image.set_data(picture)

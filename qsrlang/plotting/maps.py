@@ -7,10 +7,10 @@ import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.colors import Normalize, to_rgba_array
 from matplotlib.figure import Figure
-from qsrlang.maps.supports import Supports
 
 from qsrlang.arrays import FloatArray, IntArray, frozen_array
 from qsrlang.maps.occupancy import Cell, OccupancyGrid
+from qsrlang.maps.supports import Supports
 from qsrlang.plotting import layers, style
 from qsrlang.plotting.canvas import Ground, bar_box, plane_figure
 from qsrlang.plotting.labels import Labels
@@ -26,9 +26,10 @@ def draw_map(
 ) -> Figure:
     """Return a grid in greys with its support voxels coloured by part, or by `weights` (K,) where given.
 
-    The largest parts bear a colour and a name of their own, the others share one colour.
+    The largest parts bear a colour and a name of their own, the others share one colour. Raises
+    ValueRangeError where the weights do not fit the supports or the picture would be too large.
     """
-    shares = None if weights is None or supports is None else voxel_shares(supports, weights)
+    shares = None if weights is None else voxel_shares(supports, weights)
     graded = shares is not None and is_graded(shares)
     figure, axes = plane_figure(known_ground(occupancy, supports), frame="map", bars=int(graded))
     layers.add_grid(axes, occupancy)
@@ -57,9 +58,10 @@ def known_ground(occupancy: OccupancyGrid, supports: Supports | None = None) -> 
     return Ground.around(points, _MARGIN + 0.5 * occupancy.resolution)
 
 
-def voxel_shares(supports: Supports, weights: npt.ArrayLike) -> FloatArray:
+def voxel_shares(supports: Supports | None, weights: npt.ArrayLike) -> FloatArray:
     """Return the weights as an array (K,), one for each support voxel; raises ValueRangeError otherwise."""
-    return frozen_array("the weights of the support voxels", weights, (len(supports.centres),))
+    count = 0 if supports is None else len(supports.centres)
+    return frozen_array("the weights of the support voxels", weights, (count,))
 
 
 def is_graded(weights: FloatArray) -> bool:

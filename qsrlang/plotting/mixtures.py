@@ -16,7 +16,7 @@ from qsrlang.mixtures.gaussian import GaussianMixture
 from qsrlang.plotting import layers, style
 from qsrlang.plotting.canvas import Ground, bar_box, plane_figure
 from qsrlang.plotting.labels import Labels
-from qsrlang.plotting.outlines import ellipse_outline
+from qsrlang.plotting.outlines import along_edges, ellipse_outline
 from qsrlang.relations.graph import Landmark
 
 SHOWN_SHARE_OF_PEAK = 0.02
@@ -25,7 +25,7 @@ SHOWN_SHARE_OF_PEAK = 0.02
 _LONG_SIDE = 420
 _REACH_SIGMAS = 2.6
 _LABELLED = 12
-_ANCHORS, _RING = 12, 48
+_ANCHORS, _RING, _EDGE = 12, 48, 60
 
 
 def draw_mixture(
@@ -62,6 +62,8 @@ def draw_mixture(
     layers.add_supports(axes, outlines)
     layers.add_ellipses(axes, mixture.means, mixture.covariances)
     labels = Labels(axes)
+    for outline in outlines:
+        labels.keep_clear(along_edges(outline.corners, _EDGE), 1.5)
     for index in range(len(mixture.weights)):
         _keep_clear_of(labels, mixture, index, (1.0, 2.0))
     layers.add_landmarks(axes, labels, known)

@@ -55,6 +55,12 @@ def cone_outlines(cone: ViewCone, poses: npt.ArrayLike) -> FloatArray:
     return np.asarray(turned + poses[:, None, :2])
 
 
+def along_edges(corners: FloatArray, count: int) -> FloatArray:
+    """Return `count` points on each edge of a closed polygon with corners (K, 2) [m]."""
+    shares = np.arange(count)[:, None, None] / count
+    return np.asarray((corners + shares * (np.roll(corners, -1, axis=0) - corners)).reshape(-1, 2))
+
+
 def blind_edges(cone: ViewCone, pose: Pose2) -> FloatArray:
     """Return the lines (L, 2, 2) from a pose to the near corners of its cone [m]; none where they are one."""
     if not isinstance(cone, Sector) or cone.near == 0.0:

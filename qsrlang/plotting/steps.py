@@ -8,12 +8,12 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from qsrlang.maps.supports import Supports
 
 from qsrlang.arrays import FloatArray
 from qsrlang.errors import ValueRangeError
 from qsrlang.geometry.viewcone import ViewCone
 from qsrlang.maps.occupancy import OccupancyGrid
+from qsrlang.maps.supports import Supports
 from qsrlang.mixtures.gaussian import GaussianMixture
 from qsrlang.plotting import layers, style
 from qsrlang.plotting.canvas import bar_box, plane_figure
@@ -75,9 +75,9 @@ def draw_search_step(
 
 
 def _shares(supports: Supports | None, weights: npt.ArrayLike | None) -> FloatArray | None:
-    if supports is None or not len(supports.centres):
-        return None
-    return voxel_shares(supports, np.ones(len(supports.centres)) if weights is None else weights)
+    if weights is not None:
+        return voxel_shares(supports, weights)
+    return None if supports is None else np.ones(len(supports.centres))
 
 
 def _add_way(axes: Axes, steps: Sequence[SearchStep]) -> None:
@@ -87,10 +87,10 @@ def _add_way(axes: Axes, steps: Sequence[SearchStep]) -> None:
         )
     axes.plot(*steps[-1].path.T, color=style.INK, lw=1.6, solid_capstyle="round", zorder=5.5, gid="drive")
     start = steps[0].origin
-    layers.add_robot(axes, (start.x, start.y, start.yaw), size=7.0, filled=False)
+    layers.add_robot(axes, (start.x, start.y, start.yaw), size=9.0, filled=False)
     for step in steps[:-1]:
-        layers.add_robot(axes, step.candidates[step.chosen], size=7.0)
-    layers.add_robot(axes, steps[-1].candidates[steps[-1].chosen], size=11.0)
+        layers.add_robot(axes, step.candidates[step.chosen], size=9.0)
+    layers.add_robot(axes, steps[-1].candidates[steps[-1].chosen], size=14.0)
 
 
 def _add_names(

@@ -21,7 +21,7 @@ from qsrlang.maps.occupancy import Cell
 FONT = "DejaVu Sans"
 TEXT_SIZE = 8.0
 SMALL_SIZE = 7.0
-CAPTION_STEP = 11.5
+_CAPTION_STEP = 11.5
 FIGURE_WIDTH = 6.4
 DOTS_PER_INCH = 150
 
@@ -70,7 +70,7 @@ def text(size: float = TEXT_SIZE, *, bold: bool = False) -> TextSetting:
 def write_caption(axes: Axes, lines: Sequence[str]) -> None:
     """Write lines above the axes, flush left, the first one bold; plain text, whatever signs a name holds."""
     for number, line in enumerate(lines):
-        height = _CAPTION_GAP + CAPTION_STEP * (len(lines) - 1 - number)
+        height = _CAPTION_GAP + _CAPTION_STEP * (len(lines) - 1 - number)
         label = axes.annotate(
             line,
             (0.0, 1.0),
@@ -100,8 +100,8 @@ def dress(axes: Axes) -> None:
 
 def label_axes(axes: Axes, x_label: str, y_label: str) -> None:
     """Name the axes, units included."""
-    axes.set_xlabel(x_label, fontfamily=FONT, fontsize=TEXT_SIZE, color=INK, labelpad=2)
-    axes.set_ylabel(y_label, fontfamily=FONT, fontsize=TEXT_SIZE, color=INK, labelpad=2)
+    axes.set_xlabel(x_label, color=INK, labelpad=2, **text())
+    axes.set_ylabel(y_label, color=INK, labelpad=2, **text())
 
 
 def round_length(extent: float) -> float:
@@ -137,9 +137,8 @@ def add_scale_bar(axes: Axes) -> None:
         transform=axes.get_xaxis_transform(),
         ha="right",
         va="center",
-        fontfamily=FONT,
-        fontsize=SMALL_SIZE,
         color=INK,
+        **text(SMALL_SIZE),
     )
 
 
@@ -149,12 +148,10 @@ def add_colour_bar(
     """Draw a vertical colour bar in `box` (left, bottom, width, height; figure shares), labelled on top."""
     axes = figure.add_axes(box, label="colour-bar")
     steps = [[(i + 0.5) / 256.0] for i in range(256)]
-    low, high = float(scale.vmin or 0.0), float(scale.vmax or 1.0)
-    axes.imshow(
-        steps, cmap=colours, vmin=0.0, vmax=1.0, aspect="auto", origin="lower", extent=(0.0, 1.0, low, high)
-    )
+    extent = (0.0, 1.0, float(scale.vmin or 0.0), float(scale.vmax or 0.0))
+    axes.imshow(steps, cmap=colours, vmin=0.0, vmax=1.0, aspect="auto", origin="lower", extent=extent)
     axes.set_xticks([])
     axes.yaxis.tick_right()
     axes.yaxis.set_major_locator(MaxNLocator(nbins=4))
     dress(axes)
-    axes.set_title(label, fontfamily=FONT, fontsize=SMALL_SIZE, color=INK, loc="left", pad=4)
+    axes.set_title(label, color=INK, loc="left", pad=4, **text(SMALL_SIZE))

@@ -26,7 +26,7 @@ _PLAIN_SHADE = 0.45
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Views:
-    """The views of a step: outlines (N, K, 2) [m], colours (N, 4), `blind` lines (L, 2, 2) of the chosen one.
+    """The views of a step: outlines (N, K, 2) [m], shades (N,) from 0 to 1, `blind` lines (L, 2, 2).
 
     `others` (at most MAX_VIEWS) are those to draw besides the chosen one, the best last.
     """
@@ -35,29 +35,34 @@ class Views:
     outlines: FloatArray
     blind: FloatArray
     scale: Normalize
-    colours: FloatArray
+    shades: FloatArray
     others: IntArray
 
     @classmethod
     def of(cls, step: SearchStep, cone: ViewCone) -> Views:
         """Return the views of a step; values that are all the same get one plain colour."""
         scale = Normalize(float(min(0.0, step.values.min())), float(step.values.max()) or 1.0)
-        shades = scale(step.values) if np.ptp(step.values) > 0.0 else np.full(len(step.values), _PLAIN_SHADE)
+        same = bool(np.ptp(step.values) == 0.0)
         others = [index for index in step.ranking[:MAX_VIEWS] if index != step.chosen][::-1]
         return cls(
             step=step,
             outlines=cone_outlines(cone, step.candidates),
             blind=blind_edges(cone, step.pose),
             scale=scale,
-            colours=np.asarray(style.VALUE_COLOURS(np.asarray(shades))),
+            shades=np.full(len(step.values), _PLAIN_SHADE) if same else np.asarray(scale(step.values)),
             others=np.array(others, dtype=np.int64),
         )
+
+    @property
+    def colours(self) -> FloatArray:
+        """The colour of each view (N, 4)."""
+        return np.asarray(style.VALUE_COLOURS(self.shades))
 
 
 def add_views(axes: Axes, views: Views) -> None:
     """Draw the outlines of the views, a dot where the robot would stand, and the chosen view on top."""
     others = views.others
-    widths = 0.7 + 0.6 * np.asarray(views.scale(views.step.values[others]))
+    widths = 0.7 + 0.6 * views.shades[others]
     layers.add_outlines(axes, views.outlines[others], views.colours[others], widths)
     if not len(views.blind):
         x, y = views.step.candidates[others, :2].T
@@ -80,7 +85,7 @@ def _add_chosen(axes: Axes, views: Views) -> None:
     chosen = views.step.chosen
     shape = Polygon(views.outlines[chosen], closed=True, joinstyle="round", zorder=4.0)
     shape.set(facecolor=(*views.colours[chosen, :3], 0.15), edgecolor=style.ROBOT, linewidth=2.2)
-    shape.set_gid("chosen-view")
+    shape.set(gid="chosen-view")
     axes.add_patch(shape)
     edges = LineCollection(list(views.blind), colors=style.ROBOT, linewidths=0.8, zorder=4.0)
     axes.add_collection(edges, autolim=False)

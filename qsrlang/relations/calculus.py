@@ -43,7 +43,9 @@ def conjunctions(formula: Formula, relations: Mapping[str, Relation]) -> tuple[t
     return _expand(formula, relations, negated=False)
 
 
-def _expand(formula: Formula, relations: Mapping[str, Relation], negated: bool) -> tuple[tuple[Atom, ...], ...]:
+def _expand(
+    formula: Formula, relations: Mapping[str, Relation], negated: bool
+) -> tuple[tuple[Atom, ...], ...]:
     match formula:
         case Atom():
             return _opposites(formula, relations) if negated else ((formula,),)

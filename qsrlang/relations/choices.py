@@ -43,7 +43,9 @@ def build_choices(statements: Iterable[s.Statement], symbols: Symbols) -> tuple[
             case s.Believe():
                 beliefs.append((statement, _belief(statement, symbols)))
             case s.Observe():
-                counts.extend(_evidence(statement.count, statement.formula, statement.fit, statement, symbols))
+                counts.extend(
+                    _evidence(statement.count, statement.formula, statement.fit, statement, symbols)
+                )
             case s.Scene():
                 _check_members(statement, symbols)
                 count = seen.get(statement.name.text, 1.0) if statement.name else 1.0
@@ -84,7 +86,9 @@ def _belief(believe: s.Believe, symbols: Symbols) -> list[Evidence]:
     given = [alternative.share for alternative in believe.alternatives]
     if None in given and any(share is not None for share in given):
         missing = believe.alternatives[given.index(None)]
-        symbols.report("Q402", "some alternatives have a share and some have none", missing, "this one has none")
+        symbols.report(
+            "Q402", "some alternatives have a share and some have none", missing, "this one has none"
+        )
     total = sum(share or 0.0 for share in given)
     if total > 1.0 + _SHARE_SLACK:
         help_text = "shares of exclusive alternatives sum to at most 1; the rest is elsewhere"
@@ -102,7 +106,8 @@ def _evidence(
 ) -> list[Evidence]:
     """Return a formula's disjuncts, each with an equal part of the weight; empty, reported, where it is wrong."""
     atoms = list(_atoms(formula))
-    if not all([_check_atom(atom, symbols) for atom in atoms]):
+    sound = [_check_atom(atom, symbols) for atom in atoms]
+    if not all(sound):
         return []
     try:
         disjuncts = conjunctions(formula, symbols.relations)
@@ -123,15 +128,25 @@ def _evidence(
 def _constraints(
     atoms: tuple[s.Atom, ...], fit: s.Fit | None, node: s.Node, symbols: Symbols
 ) -> tuple[Constraint, ...]:
-    grouped: dict[tuple[str, str], list[AtomicRelation]] = defaultdict(list)
+    grouped: dict[Pair, list[s.Atom]] = defaultdict(list)
     for atom in atoms:
-        referent, relatum = (name.text for name in atom.arguments)
-        grouped[referent, relatum].append(AtomicRelation(symbols.relations[atom.relation.text], atom.frame))
-    statement = Statement.at(node.span)
+        grouped[atom.arguments[0].text, atom.arguments[1].text].append(atom)
     return tuple(
-        Constraint(referent, relatum, tuple(relations), statement, fit)
-        for (referent, relatum), relations in grouped.items()
+        Constraint(referent, relatum, _relations(pair_atoms, symbols), _statement(node, pair_atoms), fit)
+        for (referent, relatum), pair_atoms in grouped.items()
     )
+
+
+def _relations(atoms: list[s.Atom], symbols: Symbols) -> tuple[AtomicRelation, ...]:
+    return tuple(AtomicRelation(symbols.relations[atom.relation.text], atom.frame) for atom in atoms)
+
+
+def _statement(node: s.Node, atoms: list[s.Atom]) -> Statement:
+    """Return what to cite: of a scene, which may be long, only the atoms that speak of the pair."""
+    if not isinstance(node, s.Scene):
+        return Statement.at(node.span)
+    where = Statement.at(atoms[0].span)
+    return Statement(where.file, where.line, " ∧ ".join(" ".join(atom.span.text.split()) for atom in atoms))
 
 
 def _check_atom(atom: s.Atom, symbols: Symbols) -> bool:
@@ -153,7 +168,9 @@ def _check_front(atom: s.Atom, kind: str, symbols: Symbols) -> bool:
     if atom.frame is not s.Frame.INTRINSIC or symbols.classes[kind].front:
         return True
     help_text = f"declare '{kind} {{ front: yes }}', or write 'wrt relative'"
-    symbols.report("Q406", f"'{kind}' has no front", atom.arguments[1], "an intrinsic frame needs one", help_text)
+    symbols.report(
+        "Q406", f"'{kind}' has no front", atom.arguments[1], "an intrinsic frame needs one", help_text
+    )
     return False
 
 
@@ -163,7 +180,9 @@ def _check_members(scene: s.Scene, symbols: Symbols) -> None:
         for name in atom.arguments:
             if name.text not in members and name.text in symbols.classes:
                 help_text = f"add '{name}' to the scene's arguments"
-                symbols.report("Q211", f"'{name}' is not among the scene's arguments", name, help_text=help_text)
+                symbols.report(
+                    "Q211", f"'{name}' is not among the scene's arguments", name, help_text=help_text
+                )
 
 
 def _scene_counts(statements: tuple[s.Statement, ...], symbols: Symbols) -> dict[str, float]:
@@ -238,11 +257,14 @@ def _refined(belief: Evidence, share: float, fitted: list[Evidence]) -> list[Alt
 
 def _key(evidence: Evidence) -> object:
     return frozenset(
-        (c.referent, c.relatum, frozenset((a.relation.name, a.frame) for a in c.atoms)) for c in evidence.constraints
+        (c.referent, c.relatum, frozenset((a.relation.name, a.frame) for a in c.atoms))
+        for c in evidence.constraints
     )
 
 
-def _refuse_second(believe: s.Believe, pairs: set[Pair], governed: dict[Pair, s.Node], symbols: Symbols) -> None:
+def _refuse_second(
+    believe: s.Believe, pairs: set[Pair], governed: dict[Pair, s.Node], symbols: Symbols
+) -> None:
     for pair in sorted(pairs):
         if pair in governed:
             label = Label(governed[pair].span, "first believed here")

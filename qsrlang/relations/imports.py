@@ -83,7 +83,9 @@ def _follow(
         waiting.append(read_source(path))
         seen.add(path.resolve())
     except FileError as error:
-        diagnostics.append(Diagnostic("Q209", f"'{statement.target}': {error.problem}", statement.span, help=error.remedy))
+        diagnostics.append(
+            Diagnostic("Q209", f"'{statement.target}': {error.problem}", statement.span, help=error.remedy)
+        )
 
 
 def _versions(document: Document) -> list[Diagnostic]:

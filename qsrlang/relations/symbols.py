@@ -127,7 +127,12 @@ class Symbols:
         if declared.on is None or self.resolve_class(declared.on) is None:
             return
         if not self.classes[declared.on.text].is_surface:
-            self.report("Q201", f"'{declared.on}' is no surface", declared.on, help_text=f"declare 'surface {declared.on}.'")
+            self.report(
+                "Q201",
+                f"'{declared.on}' is no surface",
+                declared.on,
+                help_text=f"declare 'surface {declared.on}.'",
+            )
 
     def _check_landmark(self, landmark: s.Landmark, kind: s.Name) -> None:
         if landmark.name.text in self.classes:
@@ -150,7 +155,13 @@ class Symbols:
     def _unknown(self, code: str, kind: str, name: s.Name, known: Iterable[str]) -> None:
         nearest = difflib.get_close_matches(name.text, list(known), n=1)
         hint = f"did you mean '{nearest[0]}'?" if nearest else ""
-        self.report(code, f"unknown {kind} '{name}'", name, f"no {kind} of this name here or in what is imported", hint)
+        self.report(
+            code,
+            f"unknown {kind} '{name}'",
+            name,
+            f"no {kind} of this name here or in what is imported",
+            hint,
+        )
 
 
 def landmark_value(node: s.Landmark) -> Landmark:
@@ -158,7 +169,9 @@ def landmark_value(node: s.Landmark) -> Landmark:
     z = node.position[2] if len(node.position) > 2 else None
     deviation = (*node.deviation, 0.0, 0.0, 0.0)[:3] if node.deviation else (0.0, 0.0, 0.0)
     x, y = node.position[:2]
-    return Landmark(node.name.text, node.kind.text, x, y, z, node.facing, (deviation[0], deviation[1], deviation[2]))
+    return Landmark(
+        node.name.text, node.kind.text, x, y, z, node.facing, (deviation[0], deviation[1], deviation[2])
+    )
 
 
 def _object_class(node: s.DeclaredClass, kind: str) -> ObjectClass:

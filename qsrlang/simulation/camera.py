@@ -19,7 +19,10 @@ FRACTION_SPREAD = 0.8
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Targets:
-    """K objects a camera recognises: their bodies (K,), boxes' corners (K, 8, 3), centres and aims (K, 3), map frame [m]."""
+    """K objects a camera recognises: bodies (K,), boxes' corners (K, 8, 3), centres and aims (K, 3) [m].
+
+    The aim is the point a ray must reach: the centre of the first part.
+    """
 
     names: tuple[str, ...]
     kinds: tuple[str, ...]
@@ -31,7 +34,9 @@ class Targets:
     def __post_init__(self) -> None:
         count = len(self.names)
         for field, shape in (("corners", (count, 8, 3)), ("centres", (count, 3)), ("aims", (count, 3))):
-            object.__setattr__(self, field, frozen_array(f"the {field} of targets", getattr(self, field), shape))
+            object.__setattr__(
+                self, field, frozen_array(f"the {field} of targets", getattr(self, field), shape)
+            )
 
     def detection(self, index: int) -> Detection:
         """Return what a camera reports of one of them: name, class and the centre of its box."""
@@ -41,7 +46,11 @@ class Targets:
 
 def targets_of(engine: Engine, things: Sequence[tuple[Thing, int]]) -> Targets:
     """Return the targets for things, given with their bodies, where the physics has them now."""
-    corners, centres, aims = np.zeros((len(things), 8, 3)), np.zeros((len(things), 3)), np.zeros((len(things), 3))
+    corners, centres, aims = (
+        np.zeros((len(things), 8, 3)),
+        np.zeros((len(things), 3)),
+        np.zeros((len(things), 3)),
+    )
     for index, (thing, body) in enumerate(things):
         place, turn = engine.pose_of(body)
         box, centroid = thing.box, thing.centroid
@@ -51,7 +60,9 @@ def targets_of(engine: Engine, things: Sequence[tuple[Thing, int]]) -> Targets:
         centres[index] = place + turn @ (box.mean(axis=0) - centroid)
         aims[index] = place + turn @ (thing.parts[0].centre - centroid)
     names, kinds = tuple(thing.name for thing, _ in things), tuple(thing.kind for thing, _ in things)
-    return Targets(names, kinds, np.array([body for _, body in things], dtype=np.int64), corners, centres, aims)
+    return Targets(
+        names, kinds, np.array([body for _, body in things], dtype=np.int64), corners, centres, aims
+    )
 
 
 def eyes_of(poses: FloatArray, camera: Camera, floor: float) -> FloatArray:
@@ -70,19 +81,21 @@ def axes_of(poses: FloatArray, camera: Camera) -> FloatArray:
 
 
 def boxes_in_frustum(camera: Camera, corners_camera: FloatArray) -> BoolArray:
-    """Return which boxes, corners (..., 8, 3) in the camera's frame (forward, left, up), are not outside the frustum.
+    """Return which boxes, corners (..., 8, 3) as (forward, left, up), are not outside the frustum: (...,).
 
     A box is outside where one of the six planes of the frustum has all its corners behind it: the test of the
     simulator used in Kunze et al. 2014 (`boxInsideFrustum`).
     """
-    forward, left, up = np.moveaxis(corners_camera, -1, 0)
+    forward, left, up = corners_camera[..., 0], corners_camera[..., 1], corners_camera[..., 2]
     wide, high = np.tan(0.5 * camera.horizontal_fov) * forward, np.tan(0.5 * camera.vertical_fov) * forward
-    planes = (forward - camera.near, camera.far - forward, wide - left, wide + left, high - up, high + up)
-    return np.asarray(np.all([(plane >= 0.0).any(axis=-1) for plane in planes], axis=0))
+    planes = np.stack(
+        [forward - camera.near, camera.far - forward, wide - left, wide + left, high - up, high + up]
+    )
+    return np.asarray((planes.max(axis=-1) >= 0.0).all(axis=0))
 
 
 class SemanticCamera:
-    """Says which of the targets are recognised from a pose: the box in the frustum and a free ray to its aim."""
+    """Says which targets are recognised from a pose: the box in the frustum and a free ray to its aim."""
 
     def __init__(self, engine: Engine, camera: Camera, floor: float, targets: Targets) -> None:
         self._engine, self._camera, self._floor, self._targets = engine, camera, floor, targets
@@ -116,12 +129,13 @@ class SemanticCamera:
         return fractions
 
     def _in_frustum(self, poses: FloatArray, eyes: FloatArray) -> BoolArray:
-        offsets = self._targets.corners[None] - eyes[:, None, None, :]
-        return boxes_in_frustum(self._camera, np.einsum("nkcj,nij->nkci", offsets, axes_of(poses, self._camera)))
+        offsets = self._targets.corners.reshape(1, -1, 3) - eyes[:, None, :]
+        corners_camera = offsets @ axes_of(poses, self._camera).transpose(0, 2, 1)
+        return boxes_in_frustum(self._camera, corners_camera.reshape(len(poses), -1, 8, 3))
 
 
 def _lattice(corners: FloatArray) -> FloatArray:
-    """Return 3 x 3 x 3 points (V, 27, 3) within boxes of corners (V, 8, 3), FRACTION_SPREAD of the box wide."""
+    """Return 3 x 3 x 3 points (V, 27, 3) in boxes of corners (V, 8, 3), FRACTION_SPREAD of them wide."""
     steps = np.stack(np.meshgrid(*[np.array([-1.0, 0.0, 1.0])] * 3, indexing="ij"), axis=-1).reshape(27, 3)
     centre = corners.mean(axis=1)
     halves = 0.5 * (corners[:, [4, 2, 1]] - corners[:, :1])

@@ -10,7 +10,7 @@ from qsrlang.arrays import BoolArray, FloatArray, IntArray
 from qsrlang.geometry.pose import Pose2
 from qsrlang.search.sensing import Camera
 from qsrlang.simulation.camera import axes_of, eyes_of
-from qsrlang.simulation.engine import Engine
+from qsrlang.simulation.engine import Engine, Lens
 
 FARTHEST = 1.0 - 1e-6
 
@@ -19,8 +19,8 @@ FARTHEST = 1.0 - 1e-6
 class DepthImage:
     """What a depth camera sees from `eye` (3,): a point (H, W, 3) for each pixel, map frame [m].
 
-    `hit` (H, W) is False where nothing is within `far`; the point then lies at twice `far`. `bodies` (H, W) is the
-    body each pixel shows, or NOTHING.
+    `hit` (H, W) is False where nothing is within `far`; the point then lies at twice `far`. `bodies` (H, W)
+    is the body each pixel shows, or NOTHING.
     """
 
     eye: FloatArray
@@ -29,15 +29,18 @@ class DepthImage:
     bodies: IntArray
 
 
-def depth_image(engine: Engine, camera: Camera, pose: Pose2, floor: float, width: int, height: int) -> DepthImage:
+def depth_image(
+    engine: Engine, camera: Camera, pose: Pose2, floor: float, width: int, height: int
+) -> DepthImage:
     """Render what the camera sees with the robot at a pose, `width` x `height` pixels.
 
     A pixel's depth along the axis is d = f n / (f - (f - n) z) for the depth buffer's z, near n and far f.
-    The renderer samples each pixel at its lower left corner: with that the points lie on surfaces to a micrometre.
+    The renderer samples each pixel at its lower left corner.
     """
     poses = np.array([[pose.x, pose.y, pose.yaw]])
     eye, axes = eyes_of(poses, camera, floor)[0], axes_of(poses, camera)[0]
-    image = engine.render(eye, eye + axes[0], axes[2], camera, width, height)
+    lens = Lens(camera.near, camera.far, camera.horizontal_fov, camera.vertical_fov)
+    image = engine.render(eye, eye + axes[0], axes[2], lens, width, height)
     near, far = camera.near, camera.far
     hit = image.depth < FARTHEST
     depth = np.where(hit, far * near / (far - (far - near) * np.minimum(image.depth, FARTHEST)), 2.0 * far)

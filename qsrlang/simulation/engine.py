@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -16,23 +14,7 @@ import numpy.typing as npt
 from qsrlang.arrays import FloatArray, IntArray
 from qsrlang.errors import QSRError
 from qsrlang.simulation.rooms import Part, Shape, centroid_of, turned
-
-
-@contextmanager
-def _without_banner() -> Iterator[None]:
-    """Send file descriptor 2 to the null device: pybullet's C code prints its build time there when imported."""
-    saved, null = os.dup(2), os.open(os.devnull, os.O_WRONLY)
-    os.dup2(null, 2)
-    try:
-        yield
-    finally:
-        os.dup2(saved, 2)
-        os.close(saved)
-        os.close(null)
-
-
-with _without_banner():
-    import pybullet
+from qsrlang.simulation.silence import pybullet
 
 GRAVITY = 9.81
 FRICTION, ROLLING_FRICTION = 0.6, 0.001
@@ -52,7 +34,10 @@ LIGHT = {
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Hits:
-    """What N rays met: body (N,), NOTHING where a ray ran free; fraction (N,); points (N, 3) and normals (N, 3), map frame."""
+    """What N rays met: bodies (N,), NOTHING where a ray ran free, and the fraction (N,) of the way to it.
+
+    The points (N, 3) and the normals (N, 3) there are in the map frame [m].
+    """
 
     bodies: IntArray
     fractions: FloatArray
@@ -62,34 +47,34 @@ class Hits:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Picture:
-    """What was drawn: colours (H, W, 3), the depth buffer (H, W) from 0 (near) to 1 (far), bodies (H, W) or NOTHING."""
+    """What was drawn: colours (H, W, 3), depth (H, W) from 0 near to 1 far, bodies (H, W) or NOTHING."""
 
     colours: npt.NDArray[np.uint8]
     depth: FloatArray
     bodies: IntArray
 
 
-class Lens(Protocol):
-    """What a picture needs of a camera: near and far [m], fields of view [rad]."""
+@dataclass(frozen=True, slots=True)
+class Lens:
+    """What a picture needs of a camera: near and far along the axis [m], fields of view [rad]."""
 
-    @property
-    def near(self) -> float: ...
-    @property
-    def far(self) -> float: ...
-    @property
-    def horizontal_fov(self) -> float: ...
-    @property
-    def vertical_fov(self) -> float: ...
+    near: float
+    far: float
+    horizontal_fov: float
+    vertical_fov: float
 
 
 class Engine:
-    """A physics server of its own, without a window; several live side by side. Close it, or use it in `with`."""
+    """A physics server of its own, without a window; several live side by side. Close it, or use `with`."""
 
     def __init__(self) -> None:
         self._client: int = pybullet.connect(pybullet.DIRECT)
         if self._client < 0:
-            raise QSRError("no further physics server can be started; close the worlds that are no longer needed")
+            raise QSRError(
+                "no further physics server can be started; close the worlds that are no longer needed"
+            )
         self._open = True
+        self.concave: tuple[int, ...] = ()
         self.call("setGravity", 0.0, 0.0, -GRAVITY)
         self.call("setPhysicsEngineParameter", deterministicOverlappingPairs=1)
 
@@ -114,7 +99,7 @@ class Engine:
     def add_parts(
         self, parts: Sequence[Part], position: FloatArray, yaw: float, mass: float, looks: Sequence[Part] = ()
     ) -> int:
-        """Add one body made of parts given in its frame, standing at `position` (3,) and `yaw`; mass 0 is static.
+        """Add one body made of parts given in its frame, at `position` (3,) and `yaw`; mass 0 is static.
 
         It is drawn as `looks`, given in the same frame, or as its parts.
         """
@@ -137,18 +122,27 @@ class Engine:
         shape = {"shapeType": pybullet.GEOM_MESH, "fileName": str(path)}
         collision = self.call("createCollisionShape", **shape, flags=flags)
         visual = self.call("createVisualShape", **shape, rgbaColor=[*colour, 1.0])
-        return self._add_body(0.0, collision, visual, np.zeros(3), 0.0)
+        body = self._add_body(0.0, collision, visual, np.zeros(3), 0.0)
+        self.concave += (body,)
+        return body
 
     def _add_body(self, mass: float, collision: int, visual: int, position: FloatArray, yaw: float) -> int:
         if min(collision, visual) < 0:
             raise QSRError("the physics server refused a shape")
         turn = pybullet.getQuaternionFromEuler([0.0, 0.0, yaw])
         body = int(self.call("createMultiBody", mass, collision, visual, list(position), turn))
-        self.call("changeDynamics", body, -1, lateralFriction=FRICTION, rollingFriction=ROLLING_FRICTION, restitution=0.0)
+        self.call(
+            "changeDynamics",
+            body,
+            -1,
+            lateralFriction=FRICTION,
+            rollingFriction=ROLLING_FRICTION,
+            restitution=0.0,
+        )
         return body
 
     def add_ghost(self, parts: Sequence[Part], mass: float, looks: Sequence[Part]) -> int:
-        """Add a body that meets the world's bodies but lets rays pass: a robot that must not block its own camera."""
+        """Add a body that meets the world's bodies but lets rays pass: a robot's camera must see out."""
         body = self.add_parts(parts, np.zeros(3), 0.0, mass, looks)
         self.call("setCollisionFilterGroupMask", body, -1, ROBOT_GROUP, WORLD_GROUPS)
         return body
@@ -180,11 +174,21 @@ class Engine:
         return any(distance[8] < 0.0 for distance in self.call("getContactPoints", body))
 
     def render(
-        self, eye: FloatArray, target: FloatArray, up: FloatArray, lens: Lens, width: int, height: int, shadow: bool = False
+        self,
+        eye: FloatArray,
+        target: FloatArray,
+        up: FloatArray,
+        lens: Lens,
+        width: int,
+        height: int,
+        shadow: bool = False,
     ) -> Picture:
-        """Draw what a camera at `eye` (3,) sees that looks at `target` (3,), in software, without a window."""
+        """Draw what a camera at `eye` (3,) sees that looks at `target` (3,), `up` (3,) upwards."""
         view = pybullet.computeViewMatrix(eye.tolist(), target.tolist(), up.tolist())
-        half_width, half_height = lens.near * np.tan(0.5 * lens.horizontal_fov), lens.near * np.tan(0.5 * lens.vertical_fov)
+        half_width, half_height = (
+            lens.near * np.tan(0.5 * lens.horizontal_fov),
+            lens.near * np.tan(0.5 * lens.vertical_fov),
+        )
         sides = (-half_width, half_width, -half_height, half_height, lens.near, lens.far)
         projection = pybullet.computeProjectionMatrix(*(float(side) for side in sides))
         light = {"shadow": int(shadow), **LIGHT}
@@ -198,7 +202,7 @@ class Engine:
         )
 
     def rays(self, starts: FloatArray, ends: FloatArray) -> Hits:
-        """Return what the rays from starts (N, 3) to ends (N, 3) meet first; a robot's own body lets them pass."""
+        """Return what the rays from starts (N, 3) to ends (N, 3) meet first; they pass through a ghost."""
         found: list[Any] = []
         for first in range(0, len(starts), RAYS_PER_CALL):
             chunk = slice(first, first + RAYS_PER_CALL)

@@ -26,13 +26,15 @@ class Mesh:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "vertices", frozen_array("the vertices of a mesh", self.vertices, (None, 3)))
-        object.__setattr__(self, "quads", frozen_array("the quads of a mesh", self.quads, (None, 4), np.int64))
+        object.__setattr__(
+            self, "quads", frozen_array("the quads of a mesh", self.quads, (None, 4), np.int64)
+        )
 
 
 def clear_boxes(grid: VoxelGrid, boxes: Sequence[npt.ArrayLike]) -> BoolArray:
-    """Return which voxels (X, Y, Z) are occupied after those whose centre lies in one of the boxes (2, 3) are cut out.
+    """Return which voxels (X, Y, Z) are occupied once those with their centre in a box (2, 3) are cut out.
 
-    A box is widened sideways by half a voxel, so that nothing reaches into the object that stands there.
+    A box is widened sideways by half a voxel, so that nothing reaches into the object that stands in it.
     """
     occupied = np.asarray(grid.voxels == Cell.OCCUPIED)
     margin = np.array([0.5, 0.5, 0.0]) * grid.resolution
@@ -61,7 +63,7 @@ def mesh_of(occupied: BoolArray, resolution: float, origin: FloatArray) -> Mesh:
 
 
 def _rectangles(occupied: BoolArray, axis: int, side: int) -> IntArray:
-    """Return corners (R, 4, 3), in lattice steps, of the faces that look along +axis (side 1) or -axis (side 0)."""
+    """Return corners (R, 4, 3), in lattice steps, of faces that look along +axis (side 1) or -axis (0)."""
     u, v = (axis + 1) % 3, (axis + 2) % 3
     solid = np.pad(occupied.transpose(axis, u, v), ((1, 1), (0, 0), (0, 0)))
     inner, outer = (solid[1:-1], solid[2:]) if side else (solid[1:-1], solid[:-2])

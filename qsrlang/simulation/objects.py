@@ -11,8 +11,9 @@ import numpy as np
 from qsrlang.arrays import FloatArray
 from qsrlang.errors import ValueRangeError
 from qsrlang.geometry.pose import Pose2
-from qsrlang.simulation.engine import NOTHING, Engine
+from qsrlang.simulation.engine import Engine
 from qsrlang.simulation.rooms import Colour, Part, Shape, Thing
+from qsrlang.simulation.surfaces import STEEPEST, surfaces_under
 
 DENSITY = 600.0
 DROP_GAP = 0.002
@@ -23,16 +24,14 @@ CALM_CHECKS = 3
 MAX_STEPS = 1_440
 REST_SPEED, REST_TURN_RATE = 0.005, 0.05
 MAX_DRIFT = 0.05
-MAX_SURFACES = 20
-STEEPEST = math.cos(math.radians(25.0))
 
 
 @dataclass(frozen=True, slots=True)
 class Placement:
     """Where an object is put: its centre x, y [m], its size (x, y, z) [m], its yaw [rad], map frame.
 
-    It is dropped on the surface below `z`, or, without `z`, on the highest surface that an arm reaches (MAX_REACH
-    above the floor). With a `z` a voxel map is cut free inside the box that stands on `z`.
+    It is dropped on the surface below `z`, or, without `z`, on the highest surface that an arm reaches
+    (MAX_REACH above the floor). With a `z` a voxel map is cut free inside the box that stands on `z`.
     """
 
     name: str
@@ -47,7 +46,9 @@ class Placement:
 
     def __post_init__(self) -> None:
         if not all(math.isfinite(value) for value in (self.x, self.y, self.z or 0.0)):
-            raise ValueRangeError(f"the place of {self.name}", (self.x, self.y, self.z), "finite numbers of metres")
+            raise ValueRangeError(
+                f"the place of {self.name}", (self.x, self.y, self.z), "finite numbers of metres"
+            )
         if not all(0.01 <= side <= 2.0 for side in self.size):
             raise ValueRangeError(f"the size of {self.name}", self.size, "0.01 to 2 m a side")
 
@@ -59,26 +60,32 @@ class Placement:
 
 
 def boxes_to_clear(placements: Sequence[Placement]) -> list[FloatArray]:
-    """Return the boxes (2, 3), map frame, in which placements that name their height would meet voxels of the past."""
+    """Return the boxes (2, 3), map frame, in which placements that name their height are to stand."""
     boxes = []
     for placed in placements:
         if placed.z is not None:
             reach = 0.5 * math.hypot(*placed.size[:2]) if placed.yaw else 0.5 * max(placed.size[:2])
-            low = np.array([placed.x - reach, placed.y - reach, placed.z])
-            boxes.append(np.stack([low, low + [2 * reach, 2 * reach, placed.size[2] + DROP_GAP]]))
+            foot = np.array([placed.x, placed.y, placed.z])
+            half = np.array([reach, reach, 0.0])
+            boxes.append(
+                np.stack([foot - half, foot + half + np.array([0.0, 0.0, placed.size[2] + DROP_GAP])])
+            )
     return boxes
 
 
 def surface_below(engine: Engine, placed: Placement, floor: float) -> float:
-    """Return the height of the highest upward surface under the footprint of a placement [m].
+    """Return the height of the highest surface under the footprint of a placement that has room for it [m].
 
-    Raises ValueRangeError where there is none between its `z` (or MAX_REACH above the floor) and the floor.
+    Raises ValueRangeError where there is none under its centre, below its `z` or MAX_REACH above the floor.
     """
     top = floor + MAX_REACH if placed.z is None else placed.z + DROP_GAP
-    heights = _surfaces(engine, _footprint(placed), top, floor)
+    foot = _footprint(placed)
+    heights = surfaces_under(engine, foot, floor, placed.size[2] + DROP_GAP).highest(len(foot), top)
     if np.isnan(heights[0]):
         where = f"({placed.x:.2f} m, {placed.y:.2f} m), below z = {top:.2f} m"
-        raise ValueRangeError(f"the place of {placed.name}", where, "a place above a surface; move it over one")
+        raise ValueRangeError(
+            f"the place of {placed.name}", where, "a place above a surface with room for it"
+        )
     return float(np.nanmax(heights))
 
 
@@ -88,25 +95,10 @@ def _footprint(placed: Placement) -> FloatArray:
     return Pose2(placed.x, placed.y, placed.yaw).transform(steps * half)
 
 
-def _surfaces(engine: Engine, points: FloatArray, top: float, floor: float) -> FloatArray:
-    """Return the height (N,) of the first surface that looks up, under each point (N, 2); nan where there is none."""
-    heights, below = np.full(len(points), np.nan), np.full(len(points), top)
-    bottom = np.full(len(points), floor - 0.2)
-    for _ in range(MAX_SURFACES):
-        hits = engine.rays(np.column_stack([points, below]), np.column_stack([points, bottom]))
-        met = np.isnan(heights) & (hits.bodies != NOTHING)
-        up = met & (hits.normals[:, 2] >= STEEPEST) & (hits.fractions > 0.0)
-        heights[up] = hits.points[up, 2]
-        below = np.where(met & ~up, hits.points[:, 2] - 1e-3, below)
-        if not (met & ~up).any():
-            break
-    return heights
-
-
 def settle(engine: Engine, dropped: Sequence[tuple[Thing, int]]) -> None:
-    """Step the physics until all things, given with their bodies, rest; raises ValueRangeError where one does not stay.
+    """Step the physics until all things, given with their bodies, rest.
 
-    A thing stays where it lies within MAX_DRIFT of the place it was dropped at and has not sunk or fallen.
+    Raises ValueRangeError where one leaves the place it was dropped at by more than MAX_DRIFT, or tips over.
     """
     before = [engine.pose_of(body)[0] for _, body in dropped]
     calm = 0
@@ -125,6 +117,10 @@ def _check_rest(engine: Engine, thing: Thing, body: int, start: FloatArray) -> N
     if drift.max() > MAX_DRIFT or turn[2, 2] < STEEPEST:
         where = f"({thing.pose.x:.2f} m, {thing.pose.y:.2f} m)"
         problem = f"({place[0]:.2f} m, {place[1]:.2f} m, {place[2]:.2f} m) after it was put down at {where}"
-        raise ValueRangeError(f"where {thing.name} came to rest", problem, "to stay there; move it off the edge")
+        raise ValueRangeError(
+            f"where {thing.name} came to rest", problem, "to stay there; move it off the edge"
+        )
     if not engine.is_slow(body, 10 * REST_SPEED, 10 * REST_TURN_RATE):
-        raise ValueRangeError(f"the speed of {thing.name}", "still above 0", "rest within 6 s; give it a flat side")
+        raise ValueRangeError(
+            f"the speed of {thing.name}", "still above 0", "rest within 6 s; give it a flat side"
+        )

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import numpy.typing as npt
 
 from qsrlang.arrays import FloatArray
 from qsrlang.errors import ValueRangeError
-from qsrlang.simulation.engine import NOTHING
+from qsrlang.simulation.engine import NOTHING, Lens
 from qsrlang.simulation.rooms import Room
 from qsrlang.simulation.scene import Scene, scene_of_room
 from qsrlang.simulation.world import PybulletWorld
@@ -21,14 +19,6 @@ SMOOTHING = 2
 BACKGROUND = np.array([238, 242, 245], dtype=np.uint8)
 
 
-@dataclass(frozen=True, slots=True)
-class _Lens:
-    horizontal_fov: float
-    vertical_fov: float
-    near: float = NEAR
-    far: float = FAR
-
-
 def scene_picture(
     place: PybulletWorld | Scene | Room,
     eye: npt.ArrayLike,
@@ -36,9 +26,10 @@ def scene_picture(
     size: tuple[int, int] = (960, 640),
     vertical_fov: float = VERTICAL_FOV,
 ) -> npt.NDArray[np.uint8]:
-    """Return a colour picture (height, width, 3) of a place, from `eye` (3,) towards `target` (3,), map frame [m].
+    """Return a colour picture (height, width, 3) of a place, from `eye` (3,) to `target` (3,), map frame [m].
 
-    A robot is left out of what it sees with its own eye. `size` is (width, height) in pixels. Raises ValueRangeError where it is too large or the two points coincide.
+    A robot is left out of what it sees with its own eye. `size` is (width, height) in pixels.
+    Raises ValueRangeError where it is too large or the two points coincide.
     """
     width, height = size
     if not (0 < width <= MAX_PICTURE_SIDE and 0 < height <= MAX_PICTURE_SIDE):
@@ -64,7 +55,7 @@ def _drawn(
         raise ValueRangeError("the target of a picture", target.tolist(), "another point than the eye")
     upward = np.array([0.0, 0.0, 1.0]) if np.hypot(way[0], way[1]) > 1e-3 else np.array([0.0, 1.0, 0.0])
     width, height = size
-    lens = _Lens(2.0 * float(np.arctan(np.tan(0.5 * fov) * width / height)), fov)
+    lens = Lens(NEAR, FAR, 2.0 * float(np.arctan(np.tan(0.5 * fov) * width / height)), fov)
     fine = scene.engine.render(eye, target, upward, lens, SMOOTHING * width, SMOOTHING * height, shadow=True)
     colours = np.where((fine.bodies == NOTHING)[..., None], BACKGROUND, fine.colours)
     blocks = colours.reshape(height, SMOOTHING, width, SMOOTHING, 3)

@@ -30,7 +30,7 @@ class _Strict(BaseModel):
 
 
 class _PartText(_Strict):
-    """Exactly one of `box = [x, y, z]` and `cylinder = [diameter, height]`; `at` is the middle of its underside."""
+    """One of `box = [x, y, z]` and `cylinder = [diameter, height]`; `at` is the middle of its underside."""
 
     box: tuple[Length, Length, Length] | None = None
     cylinder: tuple[Length, Length] | None = None
@@ -59,7 +59,7 @@ class _KindText(_Strict):
 
 
 class _ThingText(_Strict):
-    """`at` and `facing_deg` are in the map frame, or in the frame of the thing that `on` names, on its top."""
+    """`at` and `facing_deg` are in the map frame, or, on its top, in that of the thing which `on` names."""
 
     name: Annotated[str, Field(min_length=1, max_length=80)]
     kind: str
@@ -164,9 +164,13 @@ def _colour(code: str) -> Colour:
     return red, green, blue
 
 
-def _thing(entry: _ThingText, kinds: dict[str, _KindText], colours: dict[str, Colour], built: dict[str, Thing]) -> Thing:
+def _thing(
+    entry: _ThingText, kinds: dict[str, _KindText], colours: dict[str, Colour], built: dict[str, Thing]
+) -> Thing:
     if entry.kind not in kinds:
-        raise ValueError(f"thing '{entry.name}' is of the unknown kind '{entry.kind}'; known: {', '.join(sorted(kinds))}")
+        raise ValueError(
+            f"thing '{entry.name}' is of the unknown kind '{entry.kind}'; known: {', '.join(sorted(kinds))}"
+        )
     kind = kinds[entry.kind]
     pose, z = Pose2(*entry.at, math.radians(entry.facing_deg)), entry.z
     if entry.on is not None:

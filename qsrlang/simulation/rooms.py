@@ -27,7 +27,7 @@ class Shape(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """A box or an upright cylinder: size (x, y, z) [m] and the middle of its underside, in the frame of its thing."""
+    """A box or an upright cylinder: size (x, y, z) [m], and the middle of its underside in its thing."""
 
     shape: Shape
     size: tuple[float, float, float]
@@ -43,7 +43,8 @@ class Part:
     @property
     def centre(self) -> FloatArray:
         """The centre (3,) in the frame of the thing [m]."""
-        return np.array(self.at) + [0.0, 0.0, 0.5 * self.size[2]]
+        x, y, z = self.at
+        return np.array([x, y, z + 0.5 * self.size[2]])
 
     @property
     def volume(self) -> float:
@@ -54,9 +55,9 @@ class Part:
 
 @dataclass(frozen=True, slots=True)
 class Thing:
-    """A thing in a room: its front looks along +x of `pose`, its underside stands at height `z`; mass 0 is static.
+    """A thing in a room: its front looks along +x of `pose`, its underside is at `z` [m]; mass 0 is static.
 
-    A camera that recognises it aims at the centre of its first part. The physics takes at most MAX_PARTS parts.
+    A camera that recognises it aims at the centre of its first part. It has at most MAX_PARTS parts.
     """
 
     name: str
@@ -116,7 +117,9 @@ class Room:
         for thing in self.things:
             if thing.name == name:
                 return thing
-        raise UnknownNameError(f"thing in the room '{self.name}'", name, (thing.name for thing in self.things))
+        raise UnknownNameError(
+            f"thing in the room '{self.name}'", name, (thing.name for thing in self.things)
+        )
 
     def of_kind(self, kind: str) -> tuple[Thing, ...]:
         """Return the things of this class, in the order of the room."""

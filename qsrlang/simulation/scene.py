@@ -20,7 +20,7 @@ Bounds = tuple[float, float, float, float]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Scene:
-    """Bodies at rest in an engine: things with their bodies, the floor's height [m], bounds of the plane, and a name."""
+    """Bodies at rest in an engine: things with their bodies, the floor's height [m], the bounds, a name."""
 
     engine: Engine
     things: tuple[tuple[Thing, int], ...]
@@ -32,7 +32,7 @@ class Scene:
 def scene_of_room(room: Room, placements: Sequence[Placement] = ()) -> Scene:
     """Build a furnished room, let its movable things settle, and place the objects.
 
-    Raises OutsideMapError where a placement lies outside the room, ValueRangeError where one does not stay put.
+    Raises OutsideMapError where a placement lies outside the room, ValueRangeError where one does not stay.
     """
 
     def build(engine: Engine) -> Scene:
@@ -48,7 +48,7 @@ def scene_of_room(room: Room, placements: Sequence[Placement] = ()) -> Scene:
 def scene_of_voxels(voxels: VoxelGrid, placements: Sequence[Placement], floor: float) -> Scene:
     """Build the occupied voxels as one static body and place the objects; raises as `scene_of_room` does.
 
-    Voxels inside the box of a placement that names its height are cut out: a map may hold what once stood there.
+    Voxels in the box of a placement that names its height are cut out: a map may hold what once stood there.
     """
 
     def build(engine: Engine) -> Scene:

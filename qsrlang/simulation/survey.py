@@ -31,7 +31,7 @@ MAX_PLACES = 2_000
 def survey_room(
     room: Room, robot: Robot = SURVEY_ROBOT, camera: Camera = SURVEY_CAMERA
 ) -> tuple[OccupancyGrid, VoxelGrid]:
-    """Return the plane map and the voxel map (0.05 m) that a robot makes of a room's static part, from its start.
+    """Return the plane map and the voxel map (0.05 m) that a robot makes of the static part of a room.
 
     It drives over a lattice of places it finds free, looks around from some of them with a depth camera, and
     integrates the images. Nothing is read from the room's description but its outer bounds and its start.
@@ -46,7 +46,7 @@ def survey_room(
 
 
 def tour(scene: Scene, robot: Robot, camera: Camera, start: Pose2) -> FloatArray:
-    """Return places (P, 2) to look around from: reached on a lattice of free places, TOUR_SPACING apart, the start first."""
+    """Return places (P, 2) to look around from, TOUR_SPACING apart, the start first."""
     reached = _reached(RobotBody(scene.engine, robot, camera, scene.floor), start.position)
     chosen = reached[:1]
     while True:
@@ -58,7 +58,7 @@ def tour(scene: Scene, robot: Robot, camera: Camera, start: Pose2) -> FloatArray
 
 
 def _reached(body: RobotBody, start: FloatArray) -> FloatArray:
-    """Return the lattice places (K, 2) that the robot reaches, by driving from free place to free neighbour."""
+    """Return the lattice places (K, 2) that the robot reaches, driving from free place to free neighbour."""
     places = {(0, 0): start}
     frontier = [(0, 0)]
     while frontier and len(places) < MAX_PLACES:

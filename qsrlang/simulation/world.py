@@ -29,8 +29,8 @@ PROBES_PER_RING = 24
 class PybulletWorld:
     """A robot in a simulated place; implements `qsrlang.search.world.World`. Poses are in the map frame.
 
-    It lives until `close`, or use it in `with`. `reset` puts the robot back, so that one world serves many trials.
-    Nothing in it is random: the same scene gives the same poses to the bit, however many worlds live side by side.
+    It lives until `close`, or use it in `with`. `reset` puts the robot back: one world serves many trials.
+    Nothing in it is random: the same scene gives the same poses to the bit, beside other worlds or not.
     """
 
     def __init__(self, scene: Scene, robot: Robot, camera: Camera, start: Pose2) -> None:
@@ -44,12 +44,17 @@ class PybulletWorld:
 
     @classmethod
     def from_room(
-        cls, room: Room, placements: Sequence[Placement], robot: Robot, camera: Camera, start: Pose2 | None = None
+        cls,
+        room: Room,
+        placements: Sequence[Placement],
+        robot: Robot,
+        camera: Camera,
+        start: Pose2 | None = None,
     ) -> PybulletWorld:
         """Build a furnished room with placed objects; without `start` the robot starts where the room says.
 
-        Raises OutsideMapError, ValueRangeError where an object does not stay where it is put, and BlockedPoseError
-        where the robot would start in something.
+        Raises OutsideMapError, ValueRangeError where an object does not stay where it is put, and
+        BlockedPoseError where the robot would start in something.
         """
         return cls._of(scene_of_room(room, placements), robot, camera, start or room.start)
 
@@ -63,7 +68,10 @@ class PybulletWorld:
         start: Pose2,
         floor_height: float,
     ) -> PybulletWorld:
-        """Build the occupied voxels of a map, floor at `floor_height` [m], with placed objects; raises as `from_room`."""
+        """Build the occupied voxels of a map, floor at `floor_height` [m], with placed objects.
+
+        Raises as `from_room` does.
+        """
         return cls._of(scene_of_voxels(voxels, placements, floor_height), robot, camera, start)
 
     @classmethod
@@ -121,8 +129,8 @@ class PybulletWorld:
     def drive(self, path: FloatArray, yaw: float) -> Drive:
         """Drive along the points (K, 2) of a path, first its own place, and turn to `yaw` at the end.
 
-        It turns on the spot at every corner; seconds = travel / speed + turn / turn rate. Where it would touch
-        something it stops short: `reached` is then not the end of the path.
+        It turns on the spot at every corner; seconds = travel / speed + turn / turn rate. Where it would
+        touch something it stops short and makes the last turn there: `reached` is then not the path's end.
         """
         points = np.asarray(path, dtype=np.float64)
         if points.ndim != 2 or points.shape[1:] != (2,) or not len(points) or not np.isfinite(points).all():
@@ -137,7 +145,6 @@ class PybulletWorld:
     def visible(self, poses: FloatArray) -> BoolArray:
         """Return which of `objects` (K) a look from each of the poses (N, 3) would show: (N, K)."""
         return self._camera.visible(np.asarray(poses, dtype=np.float64))
-
 
     def depth_image(self, width: int = 320, height: int = 240) -> DepthImage:
         """Return what a depth camera in the place of the robot's camera sees now."""

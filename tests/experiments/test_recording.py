@@ -69,13 +69,22 @@ def test_an_interruption_anywhere_costs_at_most_the_last_line(tmp_path, cut):
 
 
 @pytest.mark.parametrize(
-    "change", [{"scenario": "office"}, {"variant": "B"}, {"seed": 8}, {"camera": "wide"}, {"fingerprint": "ba9876543210"}]
+    "change",
+    [
+        {"scenario": "office"},
+        {"variant": "B"},
+        {"seed": 8},
+        {"camera": "wide"},
+        {"fingerprint": "ba9876543210"},
+    ],
 )
 def test_a_file_of_another_experiment_is_refused(tmp_path, change):
     write(tmp_path / "t.csv", TRIALS)
     before = (tmp_path / "t.csv").read_bytes()
     (name, other), has = next(iter(change.items())), getattr(MADE, next(iter(change)))
-    with pytest.raises(FileError, match=rf"t\.csv: holds trials of {name} {has}, not {other}; give another file"):
+    with pytest.raises(
+        FileError, match=rf"t\.csv: holds trials of {name} {has}, not {other}; give another file"
+    ):
         Recording(tmp_path / "t.csv", replace(MADE, **change))
     assert (tmp_path / "t.csv").read_bytes() == before
 
@@ -88,8 +97,12 @@ def test_a_file_of_another_experiment_is_refused(tmp_path, change):
         b"\xff\xfe\x00",
         b"x,y\n1,2\n",
         (",".join(HEADER) + "\nkitchen,A\n").encode(),
-        (",".join(HEADER) + "\nkitchen,A,Cup,narrow,steady,7,0123456789ab,qsr,one,1,8.0,1,1.5,cup\n").encode(),
-        (",".join(HEADER) + "\nkitchen,A,Cup,narrow,steady,7,0123456789ab,qsr,1,yes,8.0,1,1.5,cup\n").encode(),
+        (
+            ",".join(HEADER) + "\nkitchen,A,Cup,narrow,steady,7,0123456789ab,qsr,one,1,8.0,1,1.5,cup\n"
+        ).encode(),
+        (
+            ",".join(HEADER) + "\nkitchen,A,Cup,narrow,steady,7,0123456789ab,qsr,1,yes,8.0,1,1.5,cup\n"
+        ).encode(),
     ],
 )
 def test_a_file_that_is_not_ours_is_refused_and_left_alone(tmp_path, content):

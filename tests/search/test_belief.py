@@ -42,7 +42,9 @@ def test_weights_are_linear_in_what_is_claimed(floor, gain, claimed):
     np.testing.assert_allclose(weights, floor + gain * claimed * AUTHORS.pdf(places), rtol=1e-12)
 
 
-@pytest.mark.parametrize(("floor", "gain", "claimed"), [(-1, 10, 1), (1, -1, 1), (1, math.inf, 1), (1, 10, 1.5)])
+@pytest.mark.parametrize(
+    ("floor", "gain", "claimed"), [(-1, 10, 1), (1, -1, 1), (1, math.inf, 1), (1, 10, 1.5)]
+)
 def test_senseless_weights_are_refused(floor, gain, claimed):
     with pytest.raises(ValueRangeError):
         voxel_weights(AUTHORS, [[0, 0]], floor, gain, claimed)

@@ -68,7 +68,12 @@ def test_the_search_ends_with_the_first_cup(navigation):
 
 
 def test_other_classes_do_not_end_it(navigation):
-    seen = [kind.kind for trial in range(30) for step in run(navigation, trial=trial).steps for kind in step.detections]
+    seen = [
+        kind.kind
+        for trial in range(30)
+        for step in run(navigation, trial=trial).steps
+        for kind in step.detections
+    ]
     assert "Mug" in seen
 
 

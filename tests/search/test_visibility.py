@@ -58,8 +58,12 @@ def test_a_thousand_random_cases_equal_the_double_loop():
     for _ in range(CASES):
         poses, cone, voxels, weights = random_case(rng)
         expected = brute_force(poses, cone, voxels, weights)
-        np.testing.assert_allclose(view_values(poses, cone, voxels, weights), expected, rtol=1e-12, atol=1e-12)
-        assert int(np.argmax(view_values(poses, cone, voxels, weights))) == int(np.argmax(np.round(expected, 9)))
+        np.testing.assert_allclose(
+            view_values(poses, cone, voxels, weights), expected, rtol=1e-12, atol=1e-12
+        )
+        assert int(np.argmax(view_values(poses, cone, voxels, weights))) == int(
+            np.argmax(np.round(expected, 9))
+        )
         seen += int((expected > 0).any())
     assert seen > CASES // 2
 
