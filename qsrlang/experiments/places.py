@@ -4,10 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from qsrlang.errors import FileError, ValueRangeError
+import numpy as np
+from scipy import ndimage
+
+from qsrlang.arrays import BoolArray
+from qsrlang.errors import FileError, NoNavigablePoseError, ValueRangeError
+from qsrlang.experiments.presets import Body
 from qsrlang.experiments.scenarios import MapFiles, Scenario
-from qsrlang.maps.navigation import NavigationGrid
-from qsrlang.maps.occupancy import OccupancyGrid
+from qsrlang.maps.navigation import NavigationGrid, occupancy_from_voxels
+from qsrlang.maps.occupancy import Cell, OccupancyGrid
 from qsrlang.maps.octomap import read_octomap
 from qsrlang.maps.rosmap import read_ros_map
 from qsrlang.maps.voxels import VoxelGrid
@@ -44,8 +49,34 @@ def read_place(scenario: Scenario) -> Place:
     else:
         room = load_room(scenario.place)
         occupancy, voxels = survey_room(room)
-    navigation = NavigationGrid.from_occupancy(occupancy, scenario.robot.clearance)
-    return Place(occupancy, voxels, room, navigation.reachable_from(scenario.start))
+    ground = safe_ground(occupancy, voxels, scenario)
+    return Place(occupancy, voxels, room, ground.reachable_from(scenario.start))
+
+
+def safe_ground(occupancy: OccupancyGrid, voxels: VoxelGrid, scenario: Scenario) -> NavigationGrid:
+    """Return where the robot's centre may be: the plane map inflated by its clearance, less what its body would touch.
+
+    The paper samples poses from the plane map alone; a map made near the floor does not show the tops of tables,
+    so cells within the robot's footprint of voxels at the height of its body are left out here.
+    """
+    mapped = NavigationGrid.from_occupancy(occupancy, scenario.robot.clearance)
+    touching = _near_bodies(occupancy, voxels, scenario.floor_height, scenario.body)
+    navigable = mapped.navigable & ~touching
+    if not navigable.any():
+        raise NoNavigablePoseError(occupancy.source, scenario.robot.clearance)
+    return NavigationGrid(occupancy, scenario.robot.clearance, navigable)
+
+
+def _near_bodies(occupancy: OccupancyGrid, voxels: VoxelGrid, floor: float, body: Body) -> BoolArray:
+    bodies = occupancy_from_voxels(voxels, floor, body.band)
+    centres = occupancy.centres_of(np.moveaxis(np.indices(occupancy.cells.shape), 0, -1))
+    rows, columns = np.moveaxis(bodies.cells_of(centres), -1, 0)
+    inside = bodies.covers(centres)
+    blocked = np.zeros(occupancy.cells.shape, dtype=bool)
+    blocked[inside] = bodies.cells[rows[inside], columns[inside]] == Cell.OCCUPIED
+    if not blocked.any():
+        return blocked
+    return np.asarray(ndimage.distance_transform_edt(~blocked) * occupancy.resolution <= body.footprint)
 
 
 def build_world(scenario: Scenario, place: Place, variant: str) -> PybulletWorld:

@@ -21,6 +21,14 @@ Positive = Annotated[float, Field(gt=0.0)]
 Count = Annotated[int, Field(ge=1, le=1_000_000)]
 
 
+@dataclass(frozen=True, slots=True)
+class Body:
+    """How far a robot keeps from what the voxel map holds between two heights above the floor [m]."""
+
+    footprint: float
+    band: tuple[float, float]
+
+
 class CameraEntry(Entry):
     """A camera file: lengths in metres, angles in degrees, a positive tilt looks up."""
 
@@ -45,10 +53,16 @@ class CameraEntry(Entry):
 
 
 class RobotEntry(Entry):
-    """A robot file: clearance [m], speed [m/s], turn rate [rad/s], dwell at a look [s]."""
+    """A robot file: clearance and footprint [m], speed [m/s], turn rate [rad/s], dwell at a look [s].
+
+    `clearance` is the distance to keep from obstacles of the plane map, `footprint` that from what the voxel map
+    holds between `band`, heights above the floor [m]: table tops that a scanner near the floor does not see.
+    """
 
     title: str
     clearance: Positive
+    footprint: Positive
+    band: Annotated[list[float], Field(min_length=2, max_length=2)]
     speed: Positive
     turn_rate: Positive
     dwell: Annotated[float, Field(ge=0.0)]
@@ -56,6 +70,13 @@ class RobotEntry(Entry):
     def robot(self) -> Robot:
         """Return the robot."""
         return Robot(self.clearance, self.speed, self.turn_rate, self.dwell)
+
+    def body(self) -> Body:
+        """Return what of the voxel map the robot keeps away from."""
+        low, high = self.band
+        if not low < high:
+            raise ValueRangeError("the band", self.band, "two heights, the lower one first")
+        return Body(self.footprint, (low, high))
 
 
 class TriangleEntry(Entry):
@@ -143,6 +164,11 @@ def read_camera(preset: Preset) -> Camera:
 def read_robot(preset: Preset) -> Robot:
     """Return the robot of a preset file."""
     return _made(preset, RobotEntry, RobotEntry.robot)
+
+
+def read_body(preset: Preset) -> Body:
+    """Return the body of a robot's preset file."""
+    return _made(preset, RobotEntry, RobotEntry.body)
 
 
 def read_planner(preset: Preset) -> PlannerEntry:

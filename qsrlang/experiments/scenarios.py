@@ -11,8 +11,10 @@ from typing import TypeVar
 
 from qsrlang.errors import FileError, UnknownNameError
 from qsrlang.experiments.presets import (
+    Body,
     PlannerEntry,
     find_preset,
+    read_body,
     read_camera,
     read_planner,
     read_robot,
@@ -69,6 +71,7 @@ class Scenario:
     camera: Camera
     robot_name: str
     robot: Robot
+    body: Body
     placements: tuple[PlacementEntry, ...]
     variants: Mapping[str, tuple[str, ...]]
     arms: Mapping[str, Arm]
@@ -113,6 +116,7 @@ def load_scenario(scenario: str | Path, camera: str | None = None, robot: str | 
         camera=read_camera(camera_preset),
         robot_name=robot_preset.name,
         robot=read_robot(robot_preset),
+        body=read_body(robot_preset),
         placements=tuple(entry.placements),
         variants=_variants(entry),
         arms={name: _arm(name, arm, entry, path.parent) for name, arm in entry.arms.items()},
@@ -174,7 +178,7 @@ def _variants(entry: ScenarioEntry) -> dict[str, tuple[str, ...]]:
 
 def _fingerprint(entry: ScenarioEntry, made: Scenario) -> str:
     arms = made.arms.values()
-    said = [entry.model_dump_json(), repr(made.camera), repr(made.robot), *(repr(arm.preset) for arm in arms)]
+    said = [entry.model_dump_json(), repr(made.camera), repr(made.robot), repr(made.body), *(repr(arm.preset) for arm in arms)]
     digest = hashlib.sha256("\n".join(said).encode())
     for path in sorted({knowledge_file(arm.knowledge) for arm in arms} | set(_files(made.place))):
         digest.update(path.read_bytes() if path.is_file() else b"")

@@ -172,12 +172,21 @@ def _explain(source: Source, span: Span, error: UnexpectedInput) -> Diagnostic:
         )
         found = f"'{error.token}'"
     else:
-        start, length, expected = max(span.start, span.end - 1), 1, set(getattr(error, "accepts", None) or ())
-        found = "the end of the text"
+        start, length = _last_character(span), 1
+        found, expected = "the end of the text", set(getattr(error, "accepts", None) or ())
     place = Span(source, start, min(start + length, max(span.end, start + 1)))
     words = sorted({_WORDS.get(name, f"'{name.lower()}'") for name in expected - {"$END"}})
     note = f"expected {', '.join(words)}" if 0 < len(words) <= _MAX_EXPECTED else ""
     return Diagnostic("Q101", f"unexpected {found}", place, note, _remedy(found, expected))
+
+
+_WORD = re.compile(r'"[^"\n]*"|#[^\n]*|\S')
+
+
+def _last_character(span: Span) -> int:
+    """Return the place of a span's last character that is no blank and no comment."""
+    words = _WORD.finditer(span.source.text, span.start, span.end)
+    return max((word.end() - 1 for word in words if not word.group().startswith("#")), default=span.start)
 
 
 def _remedy(found: str, expected: set[str]) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from lark import Token
-from lark.visitors import Transformer_NonRecursive
+from lark.visitors import Transformer_NonRecursive, v_args
 
 from qsrlang.language import syntax as s
 from qsrlang.language.diagnostics import Diagnostic
@@ -15,6 +15,7 @@ from qsrlang.language.source import Source, Span
 LENGTH, ANGLE, FRACTION = s.Dimension.LENGTH, s.Dimension.ANGLE, s.Dimension.FRACTION
 
 
+@v_args(meta=True)
 class RelationNodes(Transformer_NonRecursive[Token, Any]):
     """Builds the nodes of relation definitions of one source; raises Refused for values that make no sense."""
 

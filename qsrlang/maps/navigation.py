@@ -7,14 +7,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 from scipy import ndimage
 
 from qsrlang.arrays import BoolArray, FloatArray, IntArray, frozen_array
 from qsrlang.errors import BlockedPoseError, NoNavigablePoseError, OutsideMapError, ValueRangeError
 from qsrlang.geometry.pose import Pose2
 from qsrlang.maps.occupancy import Cell, OccupancyGrid
-from qsrlang.maps.sight import open_moves
+from qsrlang.maps.spreading import MoveArray, open_moves
 from qsrlang.maps.voxels import VoxelGrid
 
 _TOUCH = 1e-9
@@ -30,7 +29,7 @@ class NavigationGrid:
     grid: OccupancyGrid
     clearance: float
     navigable: BoolArray
-    moves: npt.NDArray[np.uint8] = field(init=False, repr=False)
+    moves: MoveArray = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         navigable = frozen_array("the navigable cells", self.navigable, self.grid.cells.shape, np.bool_)

@@ -35,7 +35,9 @@ def mean_normals(grid: VoxelGrid, indices: IntArray, unknown_is_occupied: bool =
         solid |= grid.voxels == Cell.UNKNOWN
     solid = np.pad(solid, 1, constant_values=unknown_is_occupied)
     sums, counts = cube_normals()
-    return np.asarray(_mean_normals(solid, np.ascontiguousarray(indices), sums, counts))
+    normals = np.zeros((len(indices), 3))
+    _mean_normals(solid, np.ascontiguousarray(indices), sums, counts, normals)
+    return normals
 
 
 def facing_up(grid: VoxelGrid, indices: IntArray, max_tilt: float) -> BoolArray:
@@ -48,11 +50,12 @@ def facing_up(grid: VoxelGrid, indices: IntArray, max_tilt: float) -> BoolArray:
     side up that touches a voxel of the plane in its own layer belongs to the plane.
     """
     voxels = np.pad(grid.voxels, REACH, constant_values=Cell.UNKNOWN)
-    covariances, faces = _scatter(voxels, np.ascontiguousarray(indices) + REACH, *_shells())
+    covariances, faces = np.zeros((len(indices), 3, 3)), np.zeros(len(indices), dtype=bool)
+    _scatter(voxels, np.ascontiguousarray(indices) + REACH, *_shells(), covariances, faces)
     upright = np.zeros(len(indices), dtype=bool)
     least = np.linalg.eigh(covariances[faces])[1][:, :, 0]
     upright[faces] = np.abs(least[:, 2]) >= math.cos(max_tilt)
-    return np.asarray(_with_rims(grid.voxels.shape, np.ascontiguousarray(indices), faces, upright))
+    return _with_rims(grid.voxels.shape, indices, faces, upright)
 
 
 @cache
@@ -107,10 +110,9 @@ def _shells() -> tuple[IntArray, IntArray]:
 
 
 @njit(cache=True)
-def _mean_normals(solid, indices, sums, counts):  # type: ignore[no-untyped-def]
-    normals = np.zeros((len(indices), 3))
+def _mean_normals(solid, indices, sums, counts, normals):  # type: ignore[no-untyped-def]
     for n in range(len(indices)):
-        x, y, z = indices[n]
+        x, y, z = indices[n, 0], indices[n, 1], indices[n, 2]
         count = 0
         for corner in range(8):
             i, j, k = x + (corner >> 2), y + (corner >> 1 & 1), z + (corner & 1)
@@ -118,51 +120,49 @@ def _mean_normals(solid, indices, sums, counts):  # type: ignore[no-untyped-def]
             for bit in range(8):
                 if solid[i + (bit >> 2), j + (bit >> 1 & 1), k + (bit & 1)]:
                     cube |= 1 << bit
-            normals[n] += sums[cube]
             count += counts[cube]
-        if count:
-            normals[n] /= count
-    return normals
+            for axis in range(3):
+                normals[n, axis] += sums[cube, axis]
+        for axis in range(3):
+            normals[n, axis] /= max(count, 1)
 
 
 @njit(cache=True)
-def _scatter(voxels, indices, offsets, squares):  # type: ignore[no-untyped-def]
-    covariances, faces = np.zeros((len(indices), 3, 3)), np.zeros(len(indices), dtype=np.bool_)
-    sums, products = np.zeros(3), np.zeros((3, 3))
+def _scatter(voxels, indices, offsets, squares, covariances, faces):  # type: ignore[no-untyped-def]
     for n in range(len(indices)):
-        x, y, z = indices[n]
-        above = voxels[x - 1 : x + 2, y - 1 : y + 2, z + 1]
-        if above[1, 1] == _OCCUPIED or not (above == _FREE).any():
+        x, y, z = indices[n, 0], indices[n, 1], indices[n, 2]
+        free = 0
+        for i in range(-1, 2):
+            for j in range(-1, 2):
+                free += voxels[x + i, y + j, z + 1] == _FREE
+        if voxels[x, y, z + 1] == _OCCUPIED or free == 0:
             continue
-        sums[:], products[:] = 0.0, 0.0
-        count = 0
+        count, sx, sy, sz, xx, yy, zz, xy, xz, yz = 0, 0, 0, 0, 0, 0, 0, 0, 0, 0
         for m in range(len(offsets)):
             if count >= NEIGHBOURS and squares[m] > squares[m - 1]:
                 break
-            i, j, k = offsets[m]
+            i, j, k = offsets[m, 0], offsets[m, 1], offsets[m, 2]
             if voxels[x + i, y + j, z + k] == _OCCUPIED:
                 count += 1
-                for a in range(3):
-                    sums[a] += offsets[m, a]
-                    for b in range(3):
-                        products[a, b] += offsets[m, a] * offsets[m, b]
-        if count >= 2:
-            faces[n] = True
-            for a in range(3):
-                for b in range(3):
-                    covariances[n, a, b] = products[a, b] / (count + 1) - sums[a] * sums[b] / (count + 1) ** 2
-    return covariances, faces
+                sx, sy, sz = sx + i, sy + j, sz + k
+                xx, yy, zz = xx + i * i, yy + j * j, zz + k * k
+                xy, xz, yz = xy + i * j, xz + i * k, yz + j * k
+        faces[n] = count >= 2
+        size = count + 1.0
+        covariances[n, 0, 0] = xx / size - (sx / size) ** 2
+        covariances[n, 1, 1] = yy / size - (sy / size) ** 2
+        covariances[n, 2, 2] = zz / size - (sz / size) ** 2
+        covariances[n, 0, 1] = covariances[n, 1, 0] = xy / size - sx * sy / size**2
+        covariances[n, 0, 2] = covariances[n, 2, 0] = xz / size - sx * sz / size**2
+        covariances[n, 1, 2] = covariances[n, 2, 1] = yz / size - sy * sz / size**2
 
 
-@njit(cache=True)
-def _with_rims(shape, indices, faces, upright):  # type: ignore[no-untyped-def]
-    plane = np.zeros((shape[0] + 2, shape[1] + 2, shape[2]), dtype=np.bool_)
+def _with_rims(shape: tuple[int, ...], indices: IntArray, faces: BoolArray, upright: BoolArray) -> BoolArray:
+    plane = np.zeros((shape[0] + 2, shape[1] + 2, shape[2]), dtype=bool)
+    x, y, z = indices[upright].T
+    plane[x + 1, y + 1, z] = True
+    x, y, z = indices[faces].T
+    beside = [plane[x + i, y + j, z] for i, j in itertools.product(range(3), repeat=2)]
     whole = upright.copy()
-    for n in range(len(indices)):
-        x, y, z = indices[n]
-        plane[x + 1, y + 1, z] = upright[n]
-    for n in range(len(indices)):
-        if faces[n] and not upright[n]:
-            x, y, z = indices[n]
-            whole[n] = plane[x : x + 3, y : y + 3, z].any()
+    whole[faces] |= np.any(beside, axis=0)
     return whole

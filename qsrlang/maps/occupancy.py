@@ -12,6 +12,8 @@ from qsrlang.arrays import BoolArray, FloatArray, IntArray, frozen_array
 from qsrlang.errors import ValueRangeError
 from qsrlang.geometry.pose import Pose2
 
+_FAR = 1e15
+
 
 class Cell(IntEnum):
     """What is known of a cell or a voxel."""
@@ -57,7 +59,7 @@ class OccupancyGrid:
     def cells_of(self, points_map: npt.ArrayLike) -> IntArray:
         """Return (row, column) of the cells (..., 2) that hold points (..., 2); may lie outside the grid."""
         inside = self.origin.transform_inverse(points_map) / self.resolution
-        return np.floor(inside[..., ::-1]).astype(np.int64)
+        return np.asarray(np.floor(inside[..., ::-1].clip(-_FAR, _FAR)), dtype=np.int64)
 
     def centres_of(self, cells: npt.ArrayLike) -> FloatArray:
         """Return the centres (..., 2) in the map frame of cells (..., 2) given as (row, column)."""

@@ -11,7 +11,8 @@ from qsrlang.arrays import FloatArray, frozen_array
 from qsrlang.errors import ValueRangeError
 from qsrlang.geometry.angles import wrap
 from qsrlang.maps.navigation import NavigationGrid
-from qsrlang.maps.sight import spread, trace, traced_lengths
+from qsrlang.maps.spreading import ParentArray, spread
+from qsrlang.maps.tracing import trace_lengths, trace_path
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -24,7 +25,7 @@ class DistanceField:
 
     navigation: NavigationGrid
     start: FloatArray
-    parents: npt.NDArray[np.int32]
+    parents: ParentArray
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "start", frozen_array("the start of a path", self.start, (2,)))
@@ -41,17 +42,16 @@ class DistanceField:
         """
         start = np.asarray(start_xy, dtype=np.float64)[:2]
         cell = _flat(navigation, start, "the start of a path")
-        return cls(navigation, start, spread(navigation.navigable, navigation.moves, cell, -1)[1])
+        return cls(navigation, start, spread(navigation.navigable, navigation.moves, cell)[1])
 
     def lengths_to(self, points_map: npt.ArrayLike) -> FloatArray:
         """Return the lengths (N,) [m] of the paths to points (N, 2), infinite where there is no way."""
         points = frozen_array("the goals of paths", points_map, (None, 2))
         reached = self._reached(points)
-        (start_x, start_y), goals = self._steps(self.start), self._steps(points[reached])
         lengths = np.full(len(points), np.inf)
-        lengths[reached] = self.navigation.grid.resolution * traced_lengths(
-            self.navigation.navigable, self.parents, start_x, start_y, goals, self._room()
-        )
+        start, goals = self._steps(self.start[None])[0], self._steps(points[reached])
+        steps = trace_lengths(self.navigation.navigable, self.parents, start, goals)
+        lengths[reached] = steps * self.navigation.grid.resolution
         return lengths
 
     def path_to(self, point_map: npt.ArrayLike) -> FloatArray:
@@ -63,26 +63,26 @@ class DistanceField:
         point = np.asarray(point_map, dtype=np.float64)[:2]
         self.navigation.cell_of(point, "the end of a path")
         if not self._reached(point[None])[0]:
-            goal = f"({point[0]:.2f} m, {point[1]:.2f} m)"
-            raise ValueRangeError("the end of a path", goal, "a place that can be reached from its start")
-        (start_x, start_y), (goal_x, goal_y), path = self._steps(self.start), self._steps(point), self._room()
-        count = trace(self.navigation.navigable, self.parents, start_x, start_y, goal_x, goal_y, path)
-        corners = self.navigation.grid.origin.transform(path[:count] * self.navigation.grid.resolution)
+            place = f"({point[0]:.2f} m, {point[1]:.2f} m)"
+            raise ValueRangeError("the end of a path", place, "a place that can be reached from its start")
+        start, goal = self._steps(np.stack([self.start, point]))
+        steps = trace_path(self.navigation.navigable, self.parents, start, goal)
+        corners = self.navigation.grid.origin.transform(steps * self.navigation.grid.resolution)
         corners[0], corners[-1] = self.start, point
         return corners
 
     def _steps(self, points_map: FloatArray) -> FloatArray:
+        # Points on the grid in cells, none rounded over the border of its cell or of the grid.
         grid = self.navigation.grid
-        return np.asarray(grid.origin.transform_inverse(points_map) / grid.resolution)
+        cells = np.clip(grid.cells_of(points_map), 0, np.array(grid.cells.shape) - 1)[:, ::-1]
+        steps = grid.origin.transform_inverse(points_map) / grid.resolution
+        return np.clip(steps, cells, np.nextafter(cells + 1.0, cells))
 
     def _reached(self, points_map: FloatArray) -> npt.NDArray[np.bool_]:
         reached = self.navigation.is_navigable(points_map)
         rows, columns = self.navigation.grid.cells_of(points_map[reached]).T
         reached[reached] = self.parents[rows * self.navigation.navigable.shape[1] + columns] >= 0
         return reached
-
-    def _room(self) -> FloatArray:
-        return np.empty((int(np.count_nonzero(self.parents >= 0)) + 3, 2))
 
 
 def shortest_path(navigation: NavigationGrid, start_xy: npt.ArrayLike, end_xy: npt.ArrayLike) -> FloatArray:

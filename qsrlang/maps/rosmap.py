@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,6 +24,10 @@ _T = TypeVar("_T")
 MAX_YAML_BYTES = 65_536
 MODES = ("trinary", "scale", "raw")
 _REQUIRED = ("image", "resolution", "origin", "occupied_thresh", "free_thresh")
+_BLANK = re.compile(r"\s*(?:#.*)?|---\s*|\.\.\.\s*")
+_FIELD = re.compile(
+    r"(\w+)\s*:\s+(\"[^\"]*\"|'[^']*'|\[[^\]]*\]|[^\s#\"'\[](?:[^#]|(?<=\S)#)*)(?:\s+#.*)?\s*"
+)
 _TRUTH = {"0": False, "1": True, "false": False, "true": True}
 
 
@@ -67,9 +72,8 @@ def read_header(path: Path) -> RosMapHeader:
     x, y, yaw = _numbers(path, "origin", fields["origin"])
     free, occupied = (_number(path, key, fields[key]) for key in ("free_thresh", "occupied_thresh"))
     if not 0.0 <= free <= occupied <= 1.0:
-        raise FileError(
-            path, f"free_thresh {free} and occupied_thresh {occupied}", "use 0 <= free <= occupied <= 1"
-        )
+        found = f"free_thresh is {free} and occupied_thresh {occupied}"
+        raise FileError(path, found, "use 0 <= free_thresh <= occupied_thresh <= 1")
     return RosMapHeader(
         image=path.parent / _text(fields["image"]),
         resolution=_resolution(path, fields["resolution"]),
@@ -98,30 +102,20 @@ def _states(values: FloatArray, header: RosMapHeader) -> npt.NDArray[np.uint8]:
 
 def _fields(path: Path) -> dict[str, str]:
     try:
-        text = read_bounded(path, MAX_YAML_BYTES, "the .yaml of a ROS map").decode("utf-8")
+        text = read_bounded(path, MAX_YAML_BYTES, "the .yaml of a ROS map").decode("utf-8-sig")
     except UnicodeDecodeError:
         raise FileError(path, "this is not text", "name the .yaml of a ROS map, not its image") from None
     fields: dict[str, str] = {}
-    for number, raw in enumerate(text.splitlines(), start=1):
-        line = _without_comment(raw).rstrip()
-        if not line or line in ("---", "..."):
+    for number, line in enumerate(text.splitlines(), start=1):
+        if _BLANK.fullmatch(line):
             continue
-        key, colon, value = line.partition(":")
-        if not colon or not key.isidentifier() or not value[:1].isspace() or not value.strip():
-            raise FileError(
-                path, f"line {number} is not 'key: value'", "write one key with its value on each line"
-            )
-        if key in fields:
-            raise FileError(path, f"line {number} gives '{key}' a second time", "keep one of the two")
-        fields[key] = value.strip()
+        field = _FIELD.fullmatch(line)
+        if field is None:
+            raise FileError(path, f"line {number} is not 'key: value'", "write one key and its value a line")
+        if field[1] in fields:
+            raise FileError(path, f"line {number} gives '{field[1]}' a second time", "keep one of the two")
+        fields[field[1]] = field[2].strip()
     return fields
-
-
-def _without_comment(line: str) -> str:
-    starts = [at for at, sign in enumerate(line) if sign == "#" and (at == 0 or line[at - 1].isspace())]
-    quoted = [at for at in starts if line[:at].count('"') % 2 or line[:at].count("'") % 2]
-    ends = [at for at in starts if at not in quoted]
-    return line[: ends[0]] if ends else line
 
 
 def _text(value: str) -> str:

@@ -80,11 +80,18 @@ def _upright(grid: VoxelGrid, indices: IntArray, max_tilt: float) -> BoolArray:
     return np.asarray((lengths > 1e-9) & (normals[:, 2] >= math.cos(max_tilt) * lengths))
 
 
-def _parts(grid: VoxelGrid, indices: IntArray, min_part: int) -> Supports:
-    mask = np.zeros(grid.voxels.shape, dtype=bool)
-    mask[tuple(indices.T)] = True
+def _labels(indices: IntArray) -> IntArray:
+    if len(indices) == 0:
+        return np.zeros(0, dtype=np.int64)
+    inside = tuple((indices - indices.min(axis=0)).T)
+    mask = np.zeros([axis.max() + 1 for axis in inside], dtype=bool)
+    mask[inside] = True
     labels, _ = ndimage.label(mask, structure=np.ones((3, 3, 3)))
-    label = labels[tuple(indices.T)]
+    return np.asarray(labels[inside], dtype=np.int64)
+
+
+def _parts(grid: VoxelGrid, indices: IntArray, min_part: int) -> Supports:
+    label = _labels(indices)
     sizes = np.bincount(label, minlength=1)
     order = [found for found in np.argsort(-sizes, kind="stable") if sizes[found] >= max(min_part, 1)]
     rank = np.full(len(sizes), -1)

@@ -32,7 +32,8 @@ class VoxelGrid:
 
     def indices(self, state: Cell) -> IntArray:
         """Return the indices (K, 3) of all voxels in this state."""
-        return np.argwhere(self.voxels == state)
+        flat = np.flatnonzero(self.voxels.reshape(-1) == state)
+        return np.stack(np.unravel_index(flat, self.voxels.shape), axis=-1)
 
     def centres_of(self, indices: npt.ArrayLike) -> FloatArray:
         """Return the centres (..., 3) in the map frame of voxel indices (..., 3) [m]."""

@@ -42,6 +42,15 @@ class Stance:
         poses = None if self.support_poses is None else self.support_poses[chosen]
         return Stance(self.positions[chosen], self.yaws[chosen], self.axes[chosen], poses)
 
+    def distinct(self) -> tuple[IntArray, IntArray]:
+        """Return the first of each kind of stand, and for every stand (P,) which of those it equals."""
+        columns = [self.positions, self.yaws[:, None], self.axes]
+        columns += [] if self.support_poses is None else [self.support_poses]
+        _, first, which = np.unique(
+            np.concatenate(columns, axis=1), axis=0, return_index=True, return_inverse=True
+        )
+        return first, which.ravel()
+
 
 @dataclass(frozen=True, slots=True)
 class PolarDensity:
@@ -176,13 +185,14 @@ class PolarDensity:
         return np.asarray(mass)
 
     def _normaliser(self, stance: Stance) -> FloatArray:
+        first, which = stance.distinct()
         parts = []
-        for at in range(0, len(stance.positions), _CHUNK):
-            part = stance.at(slice(at, at + _CHUNK))
+        for at in range(0, len(first), _CHUNK):
+            part = stance.at(first[at : at + _CHUNK])
             directions, weights = self._nodes(part)
             low, high = self.bounds(part, directions)
             parts.append(np.where(high > low, weights, 0.0).sum(axis=1))
-        return np.concatenate(parts)
+        return np.asarray(np.concatenate(parts)[which])
 
     def _draw_by_rejection(self, stance: Stance, rng: np.random.Generator) -> FloatArray:
         """Draw the angle directly, and again where the direction has no room; invert for the few that remain."""

@@ -4,27 +4,35 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from qsrlang.arrays import FloatArray
+from qsrlang.geometry.angles import rotation
+
+_TINY = 1e-12
 
 Conditional = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class JointGaussian:
-    """N(mean, covariance) over stacked blocks; `blocks` maps a name to its slice. mean (n,), covariance (n, n)."""
+    """N(mean, covariance) over stacked blocks; `blocks` maps a name to its slice. mean (n,), covariance (n, n).
+
+    Each block starts with a position (x, y). `orientation` [rad] is a direction that turns with the scene: cubature
+    states are laid out along it, so that a rigid motion of all that is known moves every result with it.
+    """
 
     blocks: dict[str, slice]
     mean: FloatArray
     covariance: FloatArray
+    orientation: float
 
     @classmethod
-    def empty(cls) -> JointGaussian:
+    def empty(cls, orientation: float) -> JointGaussian:
         """Return the Gaussian over nothing."""
-        return cls({}, np.zeros(0), np.zeros((0, 0)))
+        return cls({}, np.zeros(0), np.zeros((0, 0)), orientation)
 
     def with_block(self, name: str, mean: FloatArray, covariance: FloatArray) -> JointGaussian:
         """Return the joint with an independent block more."""
@@ -58,7 +66,7 @@ class JointGaussian:
         updated = self.covariance - gain @ spread @ gain.T
         evidence = -0.5 * residual @ np.linalg.solve(spread, residual)
         evidence -= 0.5 * math.log((2.0 * math.pi) ** 2 * np.linalg.det(spread))
-        joint = JointGaussian(self.blocks, self.mean + gain @ residual, 0.5 * (updated + updated.T))
+        joint = replace(self, mean=self.mean + gain @ residual, covariance=0.5 * (updated + updated.T))
         return joint, float(evidence)
 
     def marginal(self, name: str) -> tuple[FloatArray, FloatArray]:
@@ -75,12 +83,15 @@ class JointGaussian:
 
     def _cubature(self) -> FloatArray:
         """Return 2 d equally weighted states, d the rank of the covariance; the mean alone where nothing varies."""
-        values, vectors = np.linalg.eigh(self.covariance)
-        keep = values > 1e-12 * max(float(values.max(initial=0.0)), 1e-12)
-        if not keep.any():
+        turn = np.eye(len(self.mean))
+        for block in self.blocks.values():
+            pair = slice(block.start, block.start + 2)
+            turn[pair, pair] = rotation(self.orientation)
+        roots = turn @ semidefinite_root(turn.T @ self.covariance @ turn)
+        if roots.shape[1] == 0:
             return self.mean[None, :]
-        roots = (vectors[:, keep] * np.sqrt(values[keep] * keep.sum())).T
-        return np.concatenate([self.mean + roots, self.mean - roots])
+        steps = (roots * math.sqrt(roots.shape[1])).T
+        return np.concatenate([self.mean + steps, self.mean - steps])
 
     def _extended(
         self, name: str, mean: FloatArray, cross: FloatArray, covariance: FloatArray
@@ -88,4 +99,20 @@ class JointGaussian:
         size = len(self.mean)
         blocks = {**self.blocks, name: slice(size, size + len(mean))}
         full = np.block([[self.covariance, cross.T], [cross, covariance]])
-        return JointGaussian(blocks, np.concatenate([self.mean, mean]), full)
+        return JointGaussian(blocks, np.concatenate([self.mean, mean]), full, self.orientation)
+
+
+def semidefinite_root(matrix: FloatArray) -> FloatArray:
+    """Return L (n, rank) with L L^T = matrix, lower triangular where the rank is full (Cholesky, zero pivots skipped).
+
+    Unlike eigenvectors, L changes little where the matrix changes little, also when eigenvalues coincide.
+    """
+    rest = np.array(matrix)
+    floor = _TINY * max(float(np.diag(matrix).max(initial=0.0)), _TINY)
+    columns = []
+    for pivot in range(len(rest)):
+        if rest[pivot, pivot] > floor:
+            column = rest[:, pivot] / math.sqrt(rest[pivot, pivot])
+            columns.append(column)
+            rest -= np.outer(column, column)
+    return np.array(columns).reshape(len(columns), len(rest)).T

@@ -94,7 +94,7 @@ def _towards(target: str, constraints: list[Constraint]) -> list[Constraint]:
 
 def place_exactly(graph: RelationGraph, plan: Plan, viewer: Pose2 | None) -> Placement:
     """Place by moments: exact in every atom, cubature over what is uncertain before it."""
-    joint = JointGaussian.empty()
+    joint = JointGaussian.empty(_orientation(plan, viewer))
     for landmark in plan.landmarks:
         joint = joint.with_block(landmark.name, *_landmark_block(landmark))
     evidence = 0.0
@@ -152,6 +152,16 @@ def make_conditional(
         return FitConditional(constraint.fit, constraint.atoms[0].frame, view)
     density, frames = polar_density(graph, constraint, step.support)
     return PolarConditional(density, frames, view)
+
+
+def _orientation(plan: Plan, viewer: Pose2 | None) -> float:
+    """Return a direction that turns with the scene: a landmark's heading, else the viewer's line of sight."""
+    for landmark in sorted(plan.landmarks, key=lambda landmark: landmark.name):
+        if landmark.heading is not None:
+            return landmark.heading
+        if viewer is not None:
+            return math.atan2(landmark.y - viewer.y, landmark.x - viewer.x)
+    return 0.0
 
 
 def _landmark_block(landmark: Landmark) -> tuple[FloatArray, FloatArray]:

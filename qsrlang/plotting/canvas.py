@@ -6,6 +6,7 @@ import tempfile
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -27,8 +28,11 @@ _BAR_WIDTH, _BAR_HEIGHT, _BAR_GAP = 0.11, 1.15, 0.50
 _HEIGHT_LIMIT = 7.2
 _LONGEST_ASPECT = 5.0
 _CAPTION_WIDTH = 5.0
-_PACKING = 4
-_UNDATED = {".pdf": {"CreationDate": None}, ".svg": {"Date": None}, ".png": {"Software": None}}
+_WRITING: dict[str, dict[str, Any]] = {
+    ".pdf": {"metadata": {"CreationDate": None}},
+    ".png": {"metadata": {"Software": None}, "pil_kwargs": {"compress_level": 4}},
+    ".svg": {"metadata": {"Date": None}},
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,8 +107,7 @@ def save_figure(figure: Figure, path: Path | str) -> Path:
         remedy = f"end the name in {', '.join(SUFFIXES)}"
         raise FileError(path, "pictures are not written in this format", remedy)
     drawn = BytesIO()
-    packing = {"compress_level": _PACKING} if suffix == ".png" else None
-    figure.savefig(drawn, format=suffix[1:], metadata=_UNDATED[suffix], pil_kwargs=packing)
+    figure.savefig(drawn, format=suffix[1:], **_WRITING[suffix])
     try:
         _replace(path, drawn.getvalue())
     except (OSError, ValueError) as error:

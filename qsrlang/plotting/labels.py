@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 from matplotlib.axes import Axes
-from matplotlib.text import Annotation
+from matplotlib.text import Annotation, Text
 
-from qsrlang.arrays import FloatArray
+from qsrlang.arrays import FloatArray, IntArray
 from qsrlang.plotting import style
 
 _DIRECTIONS = np.array(
@@ -18,7 +18,9 @@ _DIRECTIONS = np.array(
 _REACHES = np.array([1.0, 1.7, 2.8, 4.2, 6.0, 8.0])
 _LEADER_FROM = 2.8
 _LEAST_GAP = 2.0
-_PADDING = 1.5
+_PADDING = 0.8
+_SQUARE = 1.5
+_OUTSIDE = 2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -31,18 +33,22 @@ class _Places:
 
 
 class Labels:
-    """Places the labels of one pair of axes, first come, first served, where there is room."""
+    """Places the labels of one pair of axes, first come, first served, where there is room.
+
+    What is taken is a grid of small squares over the axes; its integral image sums it over boxes at once.
+    """
 
     def __init__(self, axes: Axes) -> None:
         self._axes = axes
         self._scale = axes.figure.dpi / style.POINTS_PER_INCH
-        self._taken = np.zeros((0, 4))
+        width, height = np.ceil(np.asarray(axes.bbox.size) / _SQUARE).astype(np.int64)
+        self._taken = np.zeros((width, height), dtype=np.bool_)
 
     def keep_clear(self, points: npt.ArrayLike, radius: float) -> None:
-        """Keep labels off discs of `radius` [typographic points] around points (N, 2) in metres."""
+        """Keep labels off squares of half side `radius` [typographic points] around points (N, 2) in metres."""
         centres = self._axes.transData.transform(np.asarray(points, dtype=np.float64).reshape(-1, 2))
         reach = self._pixels(radius)
-        self._taken = np.concatenate([self._taken, np.hstack([centres - reach, centres + reach])])
+        self._take(np.hstack([centres - reach, centres + reach]))
 
     def place(
         self,
@@ -61,12 +67,12 @@ class Labels:
         written at the place that hides least. A label far from its point gets a thin leader.
         """
         label = self._write(text, style.text(size, bold=bold), colour)
-        extent = label.get_window_extent()
+        extent = Text.get_window_extent(label)
         anchors = self._axes.transData.transform(np.asarray(at, dtype=np.float64).reshape(-1, 2))
         places = self._places(anchors, np.array([extent.width, extent.height]), gap)
         hidden = self._hidden(places.boxes)
         best = int(np.argmin(hidden))
-        if hidden[best] > 0.0 and not must:
+        if hidden[best] > 0 and not must:
             label.remove()
             return None
         self._put(label, places.anchors[best], places.boxes[best], float(places.reaches[best]))
@@ -95,7 +101,7 @@ class Labels:
         label.set_position((float(dx), float(dy)))
         if label.arrow_patch is not None:
             label.arrow_patch.set_visible(reach >= _LEADER_FROM)
-        self._taken = np.concatenate([self._taken, box[None]])
+        self._take(box[None])
 
     def _pixels(self, points: float) -> float:
         return points * self._scale
@@ -112,19 +118,24 @@ class Labels:
         boxes = np.hstack([centres - 0.5 * size, centres + 0.5 * size])
         return _Places(origins.reshape(-1, 2), boxes, reaches)
 
-    def _hidden(self, boxes: FloatArray) -> FloatArray:
+    def _take(self, boxes: FloatArray) -> None:
+        for x0, y0, x1, y1 in self._squares(boxes)[1]:
+            self._taken[x0:x1, y0:y1] = True
+
+    def _hidden(self, boxes: FloatArray) -> IntArray:
         pad = self._pixels(_PADDING) * np.array([-1.0, -1.0, 1.0, 1.0])
-        padded, frame = boxes + pad, self._axes.bbox
-        out = np.stack(
-            [
-                frame.x0 - padded[:, 0],
-                frame.y0 - padded[:, 1],
-                padded[:, 2] - frame.x1,
-                padded[:, 3] - frame.y1,
-            ]
-        )
-        overlap = np.minimum(padded[:, None, 2:], self._taken[:, 2:]) - np.maximum(
-            padded[:, None, :2], self._taken[:, :2]
-        )
-        area = np.maximum(overlap, 0.0).prod(axis=-1).sum(axis=-1)
-        return np.asarray(area + np.maximum(out, 0.0).sum(axis=0) * (boxes[:, 3] - boxes[:, 1]))
+        whole, inside = self._squares(boxes + pad)
+        total = np.pad(self._taken.cumsum(axis=0, dtype=np.int64).cumsum(axis=1), ((1, 0), (1, 0)))
+        x0, y0, x1, y1 = inside.T
+        taken = total[x1, y1] - total[x0, y1] - total[x1, y0] + total[x0, y0]
+        return np.asarray(taken + _OUTSIDE * (_areas(whole) - _areas(inside)))
+
+    def _squares(self, boxes: FloatArray) -> tuple[IntArray, IntArray]:
+        corner = np.tile(self._axes.bbox.min, 2)
+        steps = (boxes - corner) / _SQUARE
+        whole = np.hstack([np.floor(steps[:, :2]), np.ceil(steps[:, 2:])]).astype(np.int64)
+        return whole, np.clip(whole, 0, np.tile(self._taken.shape, 2))
+
+
+def _areas(boxes: IntArray) -> IntArray:
+    return np.asarray((boxes[:, 2:] - boxes[:, :2]).prod(axis=1))

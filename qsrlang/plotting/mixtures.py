@@ -22,7 +22,7 @@ from qsrlang.relations.graph import Landmark
 SHOWN_SHARE_OF_PEAK = 0.02
 """Below this share of the highest density the ground stays white."""
 
-_LONG_SIDE = 420
+_LONG_SIDE = 320
 _REACH_SIGMAS = 2.6
 _LABELLED = 12
 _ANCHORS, _RING, _EDGE = 12, 48, 60
@@ -47,21 +47,12 @@ def draw_mixture(
     ground = _ground(mixture, known, outlines)
     figure, axes = plane_figure(ground, frame=frame, caption_lines=1 if title else 0, bars=1)
     peak = _add_density(axes, mixture, ground)
-    if points is not None:
-        draws = frozen_array("the points of a picture", points, (None, 2))
-        axes.plot(
-            draws[:, 0],
-            draws[:, 1],
-            ".",
-            color=style.INK,
-            markersize=1.6,
-            alpha=0.5,
-            zorder=2.5,
-            gid="points",
-        )
+    draws = frozen_array("the points of a picture", np.zeros((0, 2)) if points is None else points, (None, 2))
+    axes.plot(*draws.T, ".", color=style.INK, ms=1.6, alpha=0.5, zorder=2.5, gid="points")
     layers.add_supports(axes, outlines)
     layers.add_ellipses(axes, mixture.means, mixture.covariances)
     labels = Labels(axes)
+    labels.keep_clear(draws, 0.8)
     for outline in outlines:
         labels.keep_clear(along_edges(outline.corners, _EDGE), 1.5)
     for index in range(len(mixture.weights)):

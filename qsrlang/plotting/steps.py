@@ -133,6 +133,8 @@ def _outcome(step: SearchStep, target: str) -> str:
 
 def _views(step: SearchStep, rated: bool) -> str:
     count = len(step.candidates)
+    if count == 1:
+        return "the only view"
     drawn = f" ({MAX_VIEWS} best shown)" if count > MAX_VIEWS else ""
     if not rated:
         return f"{count} views{drawn}, all worth the same"

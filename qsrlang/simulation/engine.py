@@ -26,8 +26,8 @@ LIGHT = {
     "lightDirection": [3.0, -4.0, 9.0],
     "lightColor": [1.0, 1.0, 1.0],
     "lightDistance": 20.0,
-    "lightAmbientCoeff": 0.6,
-    "lightDiffuseCoeff": 0.5,
+    "lightAmbientCoeff": 0.68,
+    "lightDiffuseCoeff": 0.42,
     "lightSpecularCoeff": 0.0,
 }
 

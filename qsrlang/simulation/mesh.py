@@ -34,14 +34,14 @@ class Mesh:
 def clear_boxes(grid: VoxelGrid, boxes: Sequence[npt.ArrayLike]) -> BoolArray:
     """Return which voxels (X, Y, Z) are occupied once those with their centre in a box (2, 3) are cut out.
 
-    A box is widened sideways by half a voxel, so that nothing reaches into the object that stands in it.
+    A box is widened by half a voxel to its sides and upwards, so that nothing reaches into what stands in it.
     """
     occupied = np.asarray(grid.voxels == Cell.OCCUPIED)
-    margin = np.array([0.5, 0.5, 0.0]) * grid.resolution
+    below, above = np.array([[0.5, 0.5, 0.0], [0.5, 0.5, 0.5]]) * grid.resolution
     for box in boxes:
         low, high = np.asarray(box, dtype=np.float64)
-        first = np.ceil((low - margin - grid.origin) / grid.resolution - 0.5).astype(np.int64)
-        last = np.floor((high + margin - grid.origin) / grid.resolution - 0.5).astype(np.int64)
+        first = np.ceil((low - below - grid.origin) / grid.resolution - 0.5).astype(np.int64)
+        last = np.floor((high + above - grid.origin) / grid.resolution - 0.5).astype(np.int64)
         inside = tuple(slice(max(a, 0), max(b + 1, 0)) for a, b in zip(first, last, strict=True))
         occupied[inside] = False
     return occupied
@@ -52,10 +52,12 @@ def mesh_of(occupied: BoolArray, resolution: float, origin: FloatArray) -> Mesh:
 
     Raises ValueRangeError where nothing is occupied or more than MAX_QUADS faces are left.
     """
+    if not occupied.any():
+        raise ValueRangeError("the number of occupied voxels of a map", 0, "at least 1")
     rectangles = [_rectangles(occupied, axis, side) for axis in range(3) for side in (0, 1)]
     corners = np.concatenate(rectangles).reshape(-1, 3)
-    if not 0 < len(corners) <= 4 * MAX_QUADS:
-        raise ValueRangeError("the number of faces of a voxel map", len(corners) // 4, f"1 to {MAX_QUADS}")
+    if len(corners) > 4 * MAX_QUADS:
+        raise ValueRangeError("the number of faces of a voxel map", len(corners) // 4, f"at most {MAX_QUADS}")
     lattice = np.array(occupied.shape) + 1
     keys, quads = np.unique(np.ravel_multi_index(tuple(corners.T), tuple(lattice)), return_inverse=True)
     vertices = np.stack(np.unravel_index(keys, tuple(lattice)), axis=-1)
@@ -67,7 +69,10 @@ def _rectangles(occupied: BoolArray, axis: int, side: int) -> IntArray:
     u, v = (axis + 1) % 3, (axis + 2) % 3
     solid = np.pad(occupied.transpose(axis, u, v), ((1, 1), (0, 0), (0, 0)))
     inner, outer = (solid[1:-1], solid[2:]) if side else (solid[1:-1], solid[:-2])
-    layer, low, high = _merged(inner & ~outer)
+    faces = inner & ~outer
+    if not faces.any():
+        return np.empty((0, 4, 3), dtype=np.int64)
+    layer, low, high = _merged(faces)
     corners = np.empty((len(layer), 4, 3), dtype=np.int64)
     corners[..., axis] = (layer + side)[:, None]
     order = ((0, 0), (1, 0), (1, 1), (0, 1)) if side else ((0, 0), (0, 1), (1, 1), (1, 0))

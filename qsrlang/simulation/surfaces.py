@@ -80,8 +80,8 @@ def _crossings(
 ) -> tuple[IntArray, FloatArray, FloatArray]:
     """Return where vertical rays at points (N, 2) enter bodies: index of the point, height and normal's z, (C,) each.
 
-    A ray that starts within a box or cylinder does not meet it again; of a concave mesh it meets every face, so that
-    every other one is an exit.
+    A ray that starts within a box or cylinder does not meet it again, save at its start, which does not count;
+    of a concave mesh it meets every face, so that every other one is an exit.
     """
     height, active, within = (
         np.full(len(points), start),
@@ -94,8 +94,9 @@ def _crossings(
         hits = engine.rays(np.column_stack([points[active], height[active]]), ends)
         met = hits.bodies != NOTHING
         active, heights = active[met], hits.points[met, 2]
-        concave = np.isin(hits.bodies[met], engine.concave)
-        enters = ~(concave & within[active])
+        crosses = hits.fractions[met] > 0.0
+        concave = np.isin(hits.bodies[met], engine.concave) & crosses
+        enters = crosses & ~(concave & within[active])
         parts.append((active[enters], heights[enters], np.abs(hits.normals[met, 2])[enters]))
         within[active] ^= concave
         height[active] = heights + math.copysign(SKIN, end - start)

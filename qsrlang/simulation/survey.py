@@ -17,14 +17,14 @@ from qsrlang.simulation.rooms import Room
 from qsrlang.simulation.scene import Scene, scene_of_room
 
 SURVEY_ROBOT = Robot(clearance=0.35, speed=0.5, turn_rate=1.0, dwell=0.0)
-SURVEY_CAMERA = Camera(near=0.2, far=5.0, horizontal_fov=1.31, vertical_fov=1.05, height=1.5, tilt=-0.45)
+SURVEY_CAMERA = Camera(near=0.2, far=4.0, horizontal_fov=1.31, vertical_fov=1.05, height=1.7, tilt=-0.5)
 RESOLUTION = 0.05
 MAPPED_HEIGHT = 2.0
 MARGIN = 0.2
-IMAGE_WIDTH, IMAGE_HEIGHT = 160, 120
-HEADINGS = 6
+IMAGE_WIDTH, IMAGE_HEIGHT = 200, 150
+HEADINGS = 5
 LATTICE = 0.5
-TOUR_SPACING = 1.6
+TOUR_SPACING = 1.8
 MAX_PLACES = 2_000
 
 
@@ -47,7 +47,7 @@ def survey_room(
 
 def tour(scene: Scene, robot: Robot, camera: Camera, start: Pose2) -> FloatArray:
     """Return places (P, 2) to look around from, TOUR_SPACING apart, the start first."""
-    reached = _reached(RobotBody(scene.engine, robot, camera, scene.floor), start.position)
+    reached = _reached(scene, RobotBody(scene.engine, robot, camera, scene.floor), start.position)
     chosen = reached[:1]
     while True:
         gaps = np.hypot(*(reached[:, None] - chosen[None]).transpose(2, 0, 1)).min(axis=1)
@@ -57,7 +57,7 @@ def tour(scene: Scene, robot: Robot, camera: Camera, start: Pose2) -> FloatArray
         chosen = np.vstack([chosen, reached[near_enough.argmin()]])
 
 
-def _reached(body: RobotBody, start: FloatArray) -> FloatArray:
+def _reached(scene: Scene, body: RobotBody, start: FloatArray) -> FloatArray:
     """Return the lattice places (K, 2) that the robot reaches, driving from free place to free neighbour."""
     places = {(0, 0): start}
     frontier = [(0, 0)]
@@ -66,11 +66,16 @@ def _reached(body: RobotBody, start: FloatArray) -> FloatArray:
         for step in ((1, 0), (0, 1), (-1, 0), (0, -1)):
             there = (here[0] + step[0], here[1] + step[1])
             goal = start + LATTICE * np.array(there)
-            if there not in places and _drives(body, places[here], goal):
+            if there not in places and _inside(scene, goal) and _drives(body, places[here], goal):
                 places[there] = goal
                 frontier.append(there)
     body.vanish()
     return np.array(list(places.values()))
+
+
+def _inside(scene: Scene, place: FloatArray) -> bool:
+    x0, y0, x1, y1 = scene.bounds
+    return bool(x0 <= place[0] <= x1 and y0 <= place[1] <= y1)
 
 
 def _drives(body: RobotBody, start: FloatArray, goal: FloatArray) -> bool:

@@ -142,6 +142,12 @@ class PybulletWorld:
         """Dwell, look once, and return what was recognised."""
         return Look(self._camera.detections(self._pose), self._robot.dwell)
 
+    def is_free(self, pose: Pose2) -> bool:
+        """Return whether the robot would touch nothing at a pose."""
+        fits = self._body.fits(pose)
+        self._body.put(self._pose)
+        return fits
+
     def visible(self, poses: FloatArray) -> BoolArray:
         """Return which of `objects` (K) a look from each of the poses (N, 3) would show: (N, K)."""
         return self._camera.visible(np.asarray(poses, dtype=np.float64))
