@@ -13,11 +13,11 @@ from qsrlang.errors import OutsideMapError, UnreachedTargetError
 from qsrlang.experiments.places import Place
 from qsrlang.experiments.presets import PlannerEntry
 from qsrlang.experiments.scenarios import Arm, Scenario
-from qsrlang.geometry.pose import Pose2
 from qsrlang.geometry.viewcone import ViewCone
 from qsrlang.maps.supports import Supports, find_supports
 from qsrlang.mixtures.answers import Where
 from qsrlang.mixtures.queries import KnowledgeBase, load
+from qsrlang.relations.graph import Landmark
 from qsrlang.search.belief import voxel_weights
 from qsrlang.search.outcome import Limits
 from qsrlang.search.planners import Planner, make_planner
@@ -38,7 +38,7 @@ class Briefing:
     supports: Supports
     weights: FloatArray
     belief: Where | None
-    landmarks: tuple[tuple[str, Pose2], ...]
+    landmarks: tuple[Landmark, ...]
     cone: ViewCone
     limits: Limits
     planner: Planner
@@ -75,10 +75,10 @@ def supports_of(scenario: Scenario, preset: PlannerEntry, place: Place) -> Suppo
 
 def _briefing(scenario: Scenario, arm: Arm, place: Place, supports: Supports, target: str) -> Briefing:
     preset, cone, places = arm.preset, arm.preset.cone(), supports.centres[:, :2]
-    weights, belief, landmarks = np.ones(len(places)), None, tuple[tuple[str, Pose2], ...]()
+    weights, belief, landmarks = np.ones(len(places)), None, tuple[Landmark, ...]()
     if arm.planner == QSR:
         known = known_to(scenario, arm, place)
-        belief, landmarks = _belief(known, arm, target), _poses(known)
+        belief, landmarks = _belief(known, arm, target), known.landmarks
         claimed = 1.0 - belief.elsewhere
         weights = voxel_weights(belief.mixture, places, preset.weight_floor, preset.weight_gain, claimed)
     return Briefing(
@@ -110,7 +110,3 @@ def _belief(known: KnowledgeBase, arm: Arm, target: str) -> Where:
     except UnreachedTargetError as error:
         chains = error.chains or (f"no statement places {target}",)
         raise UnreachedTargetError(target, [f"{arm.knowledge}: {chain}" for chain in chains]) from None
-
-
-def _poses(known: KnowledgeBase) -> tuple[tuple[str, Pose2], ...]:
-    return tuple((one.name, Pose2(one.x, one.y, one.heading or 0.0)) for one in known.landmarks)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
@@ -15,9 +15,10 @@ from qsrlang.geometry.pose import Pose2
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ConvexPolygon:
-    """A convex polygon given by its corners (K, 2) [m], counter-clockwise."""
+    """A convex polygon given by its corners (K, 2) [m], counter-clockwise; `normals` (K, 2) are its inward unit normals."""
 
     corners: FloatArray
+    normals: FloatArray = field(init=False)
 
     def __post_init__(self) -> None:
         corners = frozen_array("the corners of a polygon", self.corners, (None, 2))
@@ -35,13 +36,6 @@ class ConvexPolygon:
         """Return the rectangle centred at `pose`: `length` along its x, `width` along its y [m]."""
         half = 0.5 * np.array([[-length, -width], [length, -width], [length, width], [-length, width]])
         return cls(pose.transform(half))
-
-    @property
-    def normals(self) -> FloatArray:
-        """The inward unit normals of the edges (K, 2)."""
-        edges = np.roll(self.corners, -1, axis=0) - self.corners
-        inward = np.stack([-edges[:, 1], edges[:, 0]], axis=-1)
-        return np.asarray(inward / np.linalg.norm(inward, axis=-1, keepdims=True))
 
     def signed_distances(self, points: npt.ArrayLike) -> FloatArray:
         """Return the distance of points (..., 2) to each edge's line, positive inside: (..., K) [m]."""

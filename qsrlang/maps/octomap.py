@@ -19,8 +19,8 @@ from qsrlang.maps.voxels import VoxelGrid
 TREE_DEPTH = 16
 KEY_OFFSET = 1 << (TREE_DEPTH - 1)
 MAX_BT_BYTES = 128_000_000
-MAX_LEAVES = 30_000_000
-MAX_VOXELS = 400_000_000
+MAX_LEAVES = 10_000_000
+MAX_VOXELS = 200_000_000
 MIN_RESOLUTION, MAX_RESOLUTION = 1e-4, 100.0
 _MAGIC = b"# Octomap OcTree binary file"
 _AGAIN = "copy the file again or write it anew with OctoMap's writeBinary"

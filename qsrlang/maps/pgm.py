@@ -11,8 +11,8 @@ from qsrlang.arrays import FloatArray
 from qsrlang.errors import FileError
 from qsrlang.maps.reading import read_bounded
 
-MAX_PIXELS = 64_000_000
-MAX_PGM_BYTES = 400_000_000
+MAX_PIXELS = 25_000_000
+MAX_PGM_BYTES = 150_000_000
 _BLANK = rb"(?:\s|#[^\n]*\n)"
 _HEADER = re.compile(
     rb"P([25])" + _BLANK + rb"+(\d{1,9})" + _BLANK + rb"+(\d{1,9})" + _BLANK + rb"+(\d{1,9})(?:#[^\n]*\n|\s)"

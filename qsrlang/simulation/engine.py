@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -36,7 +37,7 @@ LIGHT = {
 class Hits:
     """What N rays met: bodies (N,), NOTHING where a ray ran free, and the fraction (N,) of the way to it.
 
-    The points (N, 3) and the normals (N, 3) there are in the map frame [m].
+    The points (N, 3) there, or at the end of a free ray, and the normals (N, 3) are in the map frame [m].
     """
 
     bodies: IntArray
@@ -203,18 +204,18 @@ class Engine:
 
     def rays(self, starts: FloatArray, ends: FloatArray) -> Hits:
         """Return what the rays from starts (N, 3) to ends (N, 3) meet first; they pass through a ghost."""
-        found: list[Any] = []
+        starts, ends = np.asarray(starts, dtype=np.float64), np.asarray(ends, dtype=np.float64)
+        bodies, fractions = np.full(len(starts), NOTHING, dtype=np.int64), np.ones(len(starts))
+        normals = np.zeros((len(starts), 3))
         for first in range(0, len(starts), RAYS_PER_CALL):
             chunk = slice(first, first + RAYS_PER_CALL)
-            found += self.call(
-                "rayTestBatch", starts[chunk].tolist(), ends[chunk].tolist(), collisionFilterMask=WORLD_GROUPS
+            found = self.call("rayTestBatch", starts[chunk], ends[chunk], collisionFilterMask=WORLD_GROUPS)
+            bodies[chunk], _, fractions[chunk], _, slopes = zip(*found, strict=True)
+            normals[chunk] = np.fromiter(chain.from_iterable(slopes), np.float64, 3 * len(found)).reshape(
+                -1, 3
             )
-        return Hits(
-            np.array([hit[0] for hit in found], dtype=np.int64),
-            np.array([hit[2] for hit in found], dtype=np.float64),
-            np.array([hit[3] for hit in found], dtype=np.float64).reshape(-1, 3),
-            np.array([hit[4] for hit in found], dtype=np.float64).reshape(-1, 3),
-        )
+        points = starts + fractions[:, None] * (ends - starts)
+        return Hits(bodies, fractions, points, normals)
 
 
 def _shapes(parts: Sequence[Part]) -> dict[str, list[Any]]:

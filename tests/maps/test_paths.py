@@ -11,7 +11,7 @@ from hypothesis.extra import numpy as hnp
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
-from qsrlang.arrays import BoolArray, FloatArray
+from qsrlang.arrays import BoolArray, FloatArray, frozen_array
 from qsrlang.errors import BlockedPoseError, OutsideMapError, ValueRangeError
 from qsrlang.geometry.pose import Pose2
 from qsrlang.maps.navigation import NavigationGrid
@@ -20,7 +20,9 @@ from qsrlang.maps.paths import DistanceField, path_length, shortest_path, turn_a
 from qsrlang.maps.sight import clear_line
 from qsrlang.maps.spreading import open_moves, spread
 
-masks = hnp.arrays(np.bool_, hnp.array_shapes(min_dims=2, max_dims=2, min_side=2, max_side=12))
+masks = hnp.arrays(np.bool_, hnp.array_shapes(min_dims=2, max_dims=2, min_side=2, max_side=12)).map(
+    lambda mask: frozen_array("a mask", mask, (None, None), np.bool_)
+)
 
 
 def navigation_of(
@@ -207,10 +209,12 @@ def test_lines_of_sight(open_cells: BoolArray, data: st.DataObject) -> None:
 
 
 def test_no_line_slips_between_two_corners() -> None:
-    open_cells = np.array([[True, False], [False, True]])
-    assert not clear_line(open_cells, 0.5, 0.5, 1.5, 1.5)
-    assert not clear_line(open_cells, 1.5, 1.5, 0.5, 0.5)
-    assert not clear_line(np.array([[True, True], [False, True]]), 0.5, 0.5, 1.5, 1.5)
+    gap = frozen_array("a mask", [[True, False], [False, True]], (2, 2), np.bool_)
+    assert not clear_line(gap, 0.5, 0.5, 1.5, 1.5)
+    assert not clear_line(gap, 1.5, 1.5, 0.5, 0.5)
+    corner = frozen_array("a mask", [[True, True], [False, True]], (2, 2), np.bool_)
+    assert not clear_line(corner, 0.5, 0.5, 1.5, 1.5)
+    assert clear_line(corner, 0.5, 0.5, 1.5, 0.5)
 
 
 def test_lengths_and_turns_of_a_polyline() -> None:

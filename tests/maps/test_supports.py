@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from conftest import BoxRoom
+from box_rooms import BoxRoom
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp

@@ -1,0 +1,76 @@
+import qsrlang as qsr
+from qsrlang.relations.imports import shipped_knowledge
+
+
+def write(folder, name, text):
+    path = folder / name
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_imports_may_form_a_cycle(tmp_path):
+    write(tmp_path, "b.qsr", 'import "a.qsr". dynamic Plate.')
+    known = qsr.load(write(tmp_path, "a.qsr", 'import "b.qsr". dynamic Cup. observe left-of(Cup, Plate).'))
+    assert {"Cup", "Plate"} <= set(known.classes)
+
+
+def test_a_path_is_taken_from_the_importing_file(tmp_path):
+    (tmp_path / "sub").mkdir()
+    write(tmp_path / "sub", "c.qsr", "dynamic Cup.")
+    write(tmp_path / "sub", "b.qsr", 'import "c.qsr".')
+    assert "Cup" in qsr.load(write(tmp_path, "a.qsr", 'import "sub/b.qsr".')).classes
+
+
+def test_an_error_in_an_imported_file_is_told_with_its_place(tmp_path):
+    write(tmp_path, "b.qsr", "static A { size: 8 × 8 cm }.")
+    findings = qsr_findings(write(tmp_path, "a.qsr", 'import "b.qsr".\nobserve left-of(B, C).'))
+    assert [(f.code, f.span.source.name.endswith("b.qsr")) for f in findings] == [
+        ("Q201", False),
+        ("Q201", False),
+        ("Q301", True),
+    ]
+
+
+def qsr_findings(path):
+    try:
+        qsr.load(path)
+    except qsr.LanguageError as error:
+        return error.diagnostics
+    return ()
+
+
+def test_every_shipped_file_is_free_of_errors():
+    assert {"core", "office/desk"} <= set(shipped_knowledge())
+    for name in shipped_knowledge():
+        qsr.load(name)
+
+
+def test_the_built_in_relations_are_text_and_nowhere_in_code():
+    known = qsr.parse_knowledge("")
+    assert set(known.graph.relations) == {
+        "behind-of",
+        "left-of",
+        "in-front-of",
+        "right-of",
+        "close-to",
+        "distant-from",
+    }
+    for name, relation in known.graph.relations.items():
+        for other in relation.disjoint:
+            assert name in known.graph.relations[other].disjoint
+        if relation.converse:
+            assert known.graph.relations[relation.converse].converse == name
+
+
+def test_an_overridden_statement_is_told_as_information():
+    known = qsr.load("office/desk")
+    (told,) = known.diagnostics
+    assert told.code == "Q601"
+    assert not told.is_error
+    assert "Cup and Keyboard" in told.message
+
+
+def test_a_dynamic_landmark_and_an_undeclared_class_are_warnings():
+    known = qsr.parse_knowledge("scene(Cup, Plate) ⇔ left-of(Cup, Plate). landmark p : Plate at (0 m, 0 m) facing 0 deg.")
+    assert [finding.code for finding in known.diagnostics] == ["Q502", "Q501"]
+    assert len(known.where("Cup").weights) == 1
