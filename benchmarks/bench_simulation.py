@@ -54,7 +54,7 @@ def bench_world(world: PybulletWorld, drive: np.ndarray) -> None:
     eye = np.array([world.robot_pose.x, world.robot_pose.y, world.scene.floor + 1.2])
     starts = np.broadcast_to(eye, (RAYS, 3))
     ends = starts + 5.0 * rng.normal(size=(RAYS, 3))
-    _, seconds = timed(lambda: world.scene.engine.rays(starts, ends))
+    seconds = min(timed(lambda: world.scene.engine.rays(starts, ends))[1] for _ in range(5))
     line("rays", RAYS / seconds / 1e3, "thousand/s")
     _, seconds = timed(lambda: [world.look() for _ in range(VIEWS)])
     line(f"a view by the rule, {len(world.objects)} objects", seconds / VIEWS * 1e3, "ms")

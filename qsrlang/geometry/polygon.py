@@ -30,6 +30,9 @@ class ConvexPolygon:
             raise ValueRangeError(
                 "a polygon", corners.tolist(), "at least 3 corners, convex, counter-clockwise"
             )
+        inward = np.stack([-edges[:, 1], edges[:, 0]], axis=-1)
+        normals = inward / np.linalg.norm(inward, axis=-1, keepdims=True)
+        object.__setattr__(self, "normals", frozen_array("the normals of a polygon", normals, (None, 2)))
 
     @classmethod
     def rectangle(cls, pose: Pose2, length: float, width: float) -> ConvexPolygon:

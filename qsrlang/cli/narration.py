@@ -1,0 +1,150 @@
+"""A search in words: what the robot believes, where it looks and why, what it saw."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from qsrlang.experiments.stories import Opening, SearchStory
+from qsrlang.geometry.pose import Pose2
+from qsrlang.mixtures.answers import Where
+from qsrlang.search.outcome import SearchStep
+from qsrlang.search.world import Detection
+
+
+def narrate_opening(console: Console, opening: Opening, seed: int) -> None:
+    """Print what is sought, where, with what, and what the robot believes before it starts."""
+    scenario, briefing = opening.scenario, opening.briefing
+    console.print(f"[bold]{escape(scenario.title)}[/bold]", highlight=False)
+    console.print(
+        f"Sought: {briefing.target}; arm {briefing.arm}, variant {opening.variant}, camera {scenario.camera_name}, "
+        f"robot {scenario.robot_name}, seed {seed}.",
+        highlight=False,
+        markup=False,
+    )
+    supports, limits = briefing.supports, briefing.limits
+    console.print(
+        f"{len(supports.centres)} voxels on {len(supports.names)} supporting planes; at most {limits.seconds:g} s "
+        f"and {limits.poses} looks.",
+        highlight=False,
+    )
+    if briefing.belief is None:
+        console.print("It uses no relations.", highlight=False)
+    else:
+        _print_belief(console, briefing.belief)
+
+
+def _print_belief(console: Console, belief: Where) -> None:
+    table = Table(title=f"It believes: where {belief.target} is", title_justify="left")
+    for heading in ("share", "x [m]", "y [m]", "sd [m]"):
+        table.add_column(escape(heading), justify="right", no_wrap=True)
+    table.add_column("because of", overflow="fold")
+    for component in belief.components:
+        (x, y), (major, minor, _) = component.mean, component.ellipse
+        reasons = escape("\n".join(component.statements))
+        table.add_row(f"{component.weight:.3f}", f"{x:.2f}", f"{y:.2f}", f"{major:.2f} × {minor:.2f}", reasons)
+    console.print(table)
+    if belief.elsewhere > 0.0:
+        console.print(f"Elsewhere: {belief.elsewhere:.3f}.", highlight=False)
+
+
+def narrate_step(console: Console, opening: Opening, step: SearchStep, picture: Path | None) -> None:
+    """Print one step: where it looks, why, what it saw, and the clock."""
+    console.print(f"\n[bold]Step {step.number + 1}[/bold]", highlight=False)
+    lines = [
+        f"looks from {_pose(step.pose)}: {step.travel:.1f} m to drive, {math.degrees(step.turn):.0f} deg to turn",
+        f"because {_reason(opening, step)}",
+        _seen(step, opening.briefing.target),
+        f"clock {step.clock:.1f} s",
+    ]
+    if picture is not None:
+        lines.append(f"picture {picture}")
+    for line in lines:
+        console.print(f"  {line}", highlight=False, soft_wrap=True, markup=False)
+
+
+def _pose(pose: Pose2) -> str:
+    return f"({pose.x:.2f} m, {pose.y:.2f} m) facing {math.degrees(pose.yaw):.0f} deg"
+
+
+def _reason(opening: Opening, step: SearchStep) -> str:
+    count, value = len(step.candidates), step.value
+    if opening.scenario.arm(opening.briefing.arm).planner == "random":
+        return f"it picked one of {count} poses at random"
+    runner_up = max((float(other) for index, other in enumerate(step.values) if index != step.chosen), default=0.0)
+    rank = step.ranking.index(step.chosen) + 1
+    return f"its view is worth {value:.1f}, rank {rank} of {count} poses; the runner-up is worth {runner_up:.1f}"
+
+
+def _seen(step: SearchStep, target: str) -> str:
+    if not step.looked:
+        return "the time ran out before the look was over"
+    if not step.detections:
+        return f"saw nothing it knows, no {target}"
+    things = ", ".join(_thing(seen) for seen in step.detections)
+    return f"saw {things}" + ("" if any(seen.kind == target for seen in step.detections) else f"; no {target}")
+
+
+def _thing(seen: Detection) -> str:
+    x, y, z = seen.position
+    return f"{seen.name} ({seen.kind}) at ({x:.2f} m, {y:.2f} m, {z:.2f} m)"
+
+
+def narrate_end(console: Console, story: SearchStory) -> None:
+    """Print how the search ended, as a table."""
+    table = Table(title=f"\nSearch for {story.target}", title_justify="left")
+    for heading in ("outcome", "object", "time [s]", "looks", "travel [m]"):
+        table.add_column(escape(heading), justify="right")
+    name = story.detection.name if story.detection is not None else "-"
+    outcome = "found" if story.found else "not found"
+    table.add_row(outcome, name, f"{story.seconds:.1f}", str(story.poses), f"{story.travel:.1f}")
+    console.print(table)
+
+
+def story_json(story: SearchStory, pictures: Sequence[Path]) -> dict[str, Any]:
+    """Return the story as plain data: metres, radians, seconds, map frame."""
+    opening = story.opening
+    belief = opening.briefing.belief
+    return {
+        "scenario": opening.scenario.name,
+        "variant": opening.variant,
+        "arm": opening.briefing.arm,
+        "camera": opening.scenario.camera_name,
+        "robot": opening.scenario.robot_name,
+        "seed": story.seed,
+        "trial": story.trial,
+        "target": story.target,
+        "found": story.found,
+        "seconds": story.seconds,
+        "poses": story.poses,
+        "travel": story.travel,
+        "detection": _detection(story.detection) if story.detection is not None else None,
+        "belief": belief.to_json() if belief is not None else None,
+        "steps": [_step(step) for step in story.steps],
+        "pictures": [str(path) for path in pictures],
+    }
+
+
+def _step(step: SearchStep) -> dict[str, Any]:
+    return {
+        "from": [step.origin.x, step.origin.y, step.origin.yaw],
+        "pose": [step.pose.x, step.pose.y, step.pose.yaw],
+        "value": step.value,
+        "values": step.values.tolist(),
+        "travel": step.travel,
+        "turn": step.turn,
+        "seconds": step.seconds,
+        "clock": step.clock,
+        "looked": step.looked,
+        "detections": [_detection(seen) for seen in step.detections],
+    }
+
+
+def _detection(seen: Detection) -> dict[str, Any]:
+    return {"name": seen.name, "kind": seen.kind, "position": list(seen.position)}

@@ -1,0 +1,77 @@
+"""`qsr search SCENARIO`: one search, told step by step, with a picture of each step."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from qsrlang.cli.narration import narrate_end, narrate_opening, narrate_step, story_json
+from qsrlang.cli.options import Format, OutputFormat
+from qsrlang.errors import FileError
+from qsrlang.experiments.scenarios import load_scenario
+from qsrlang.experiments.stories import Opening, open_search
+from qsrlang.plotting.canvas import save_figure
+from qsrlang.plotting.steps import draw_search_step
+from qsrlang.search.outcome import SearchStep
+
+RUNS = Path("runs")
+
+
+def search(
+    scenario: Annotated[str, typer.Argument(metavar="SCENARIO", help="A shipped name, or a path that ends in .toml.")],
+    arm: Annotated[str, typer.Option(help="The search method, one of the scenario's arms.")] = "qsr",
+    target: Annotated[str | None, typer.Option(help="The class sought, the scenario's by default.")] = None,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of all random numbers.")] = 0,
+    trial: Annotated[int, typer.Option(min=0, help="Which trial of a comparison with this seed to replay.")] = 0,
+    variant: Annotated[str | None, typer.Option(help="Which objects are there; the first variant by default.")] = None,
+    camera: Annotated[str | None, typer.Option(help="A camera preset in place of the scenario's.")] = None,
+    robot: Annotated[str | None, typer.Option(help="A robot preset in place of the scenario's.")] = None,
+    output: Annotated[Path | None, typer.Option(help="Folder of the pictures, under runs/ by default.")] = None,
+    pictures: Annotated[bool, typer.Option(help="Draw a picture of every step.")] = True,
+    form: OutputFormat = Format.TEXT,
+) -> None:
+    """Search for an object once and tell every step: what is believed, where it looks, why, what it saw."""
+    opening = open_search(load_scenario(scenario, camera, robot), target, arm, variant)
+    folder = _folder(output or RUNS / f"search-{opening.scenario.name}-{arm}-seed-{seed}") if pictures else None
+    console = Console(quiet=form is Format.JSON)
+    narrate_opening(console, opening, seed)
+    steps: list[SearchStep] = []
+    drawn: list[Path] = []
+
+    def watch(step: SearchStep) -> None:
+        steps.append(step)
+        if folder is not None:
+            drawn.append(_picture(opening, steps, folder))
+        narrate_step(console, opening, step, drawn[-1] if drawn else None)
+
+    story = opening.search(seed, trial, watch)
+    narrate_end(console, story)
+    if form is Format.JSON:
+        typer.echo(json.dumps(story_json(story, drawn), indent=2, ensure_ascii=False))
+
+
+def _folder(path: Path) -> Path:
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise FileError(path, f"cannot be made a folder: {error.strerror}", "give another --output") from None
+    return path
+
+
+def _picture(opening: Opening, steps: list[SearchStep], folder: Path) -> Path:
+    briefing = opening.briefing
+    figure = draw_search_step(
+        opening.place.occupancy,
+        steps,
+        cone=briefing.cone,
+        target=briefing.target,
+        supports=briefing.supports,
+        weights=briefing.weights,
+        mixture=briefing.belief.mixture if briefing.belief is not None else None,
+        landmarks=briefing.landmarks,
+    )
+    return save_figure(figure, folder / f"step-{len(steps):02d}.png")
