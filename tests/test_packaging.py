@@ -23,7 +23,9 @@ def wheel(tmp_path_factory):
 
 def test_the_wheel_holds_what_the_program_reads(wheel):
     names = set(zipfile.ZipFile(wheel).namelist())
-    shipped = [path.relative_to(ROOT) for top in ("grammars", "knowledge") for path in (ROOT / top).rglob("*.*")]
+    shipped = [
+        path.relative_to(ROOT) for top in ("grammars", "knowledge") for path in (ROOT / top).rglob("*.*")
+    ]
     assert {f"qsrlang/{path.as_posix()}" for path in shipped if (ROOT / path).is_file()} <= names
     assert {"qsrlang/py.typed", "qsrlang/__init__.pyi"} <= names
     assert not [name for name in names if name.startswith("tests")]
@@ -34,7 +36,17 @@ def test_the_installed_wheel_checks_a_shipped_file_from_another_folder(wheel, tm
     bare = tmp_path / "bare"
     venv.create(bare, with_pip=False)
     site = bare / "lib" / f"python{sys.version_info.major}.{sys.version_info.minor}" / "site-packages"
-    installed = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--no-index", "--target", str(site)]
+    installed = [
+        sys.executable,
+        "-m",
+        "pip",
+        "install",
+        "--quiet",
+        "--no-deps",
+        "--no-index",
+        "--target",
+        str(site),
+    ]
     subprocess.run([*installed, str(wheel)], check=True)
     lender = Path(__import__("lark").__file__).parents[1]
     script = (

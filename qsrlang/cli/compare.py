@@ -33,16 +33,28 @@ class TableFormat(StrEnum):
 
 
 def compare(
-    scenario: Annotated[str, typer.Argument(metavar="SCENARIO", help="A shipped name, or a path that ends in .toml.")],
-    arms: Annotated[str | None, typer.Option(help="Names of arms, with commas; all of them by default.")] = None,
+    scenario: Annotated[
+        str, typer.Argument(metavar="SCENARIO", help="A shipped name, or a path that ends in .toml.")
+    ],
+    arms: Annotated[
+        str | None, typer.Option(help="Names of arms, with commas; all of them by default.")
+    ] = None,
     trials: Annotated[int, typer.Option(min=1, help="Trials of each arm.")] = 200,
     seed: Annotated[int, typer.Option(min=0, help="Seed of all random numbers; the arms share them.")] = 0,
-    variant: Annotated[str | None, typer.Option(help="Which objects are there; the first variant by default.")] = None,
-    processes: Annotated[int | None, typer.Option(min=1, help="Processes; one for each core by default.")] = None,
-    output: Annotated[Path | None, typer.Option(help="The per-trial CSV, under runs/ by default; resumed from.")] = None,
+    variant: Annotated[
+        str | None, typer.Option(help="Which objects are there; the first variant by default.")
+    ] = None,
+    processes: Annotated[
+        int | None, typer.Option(min=1, help="Processes; one for each core by default.")
+    ] = None,
+    output: Annotated[
+        Path | None, typer.Option(help="The per-trial CSV, under runs/ by default; resumed from.")
+    ] = None,
     camera: Annotated[str | None, typer.Option(help="A camera preset in place of the scenario's.")] = None,
     robot: Annotated[str | None, typer.Option(help="A robot preset in place of the scenario's.")] = None,
-    form: Annotated[TableFormat, typer.Option("--format", help="How the result is printed.")] = TableFormat.TABLE,
+    form: Annotated[
+        TableFormat, typer.Option("--format", help="How the result is printed.")
+    ] = TableFormat.TABLE,
 ) -> None:
     """Compare search methods over many trials that share their random numbers."""
     loaded = load_scenario(scenario, camera, robot)

@@ -48,7 +48,9 @@ def _print_belief(console: Console, belief: Where) -> None:
     for component in belief.components:
         (x, y), (major, minor, _) = component.mean, component.ellipse
         reasons = escape("\n".join(component.statements))
-        table.add_row(f"{component.weight:.3f}", f"{x:.2f}", f"{y:.2f}", f"{major:.2f} × {minor:.2f}", reasons)
+        table.add_row(
+            f"{component.weight:.3f}", f"{x:.2f}", f"{y:.2f}", f"{major:.2f} × {minor:.2f}", reasons
+        )
     console.print(table)
     if belief.elsewhere > 0.0:
         console.print(f"Elsewhere: {belief.elsewhere:.3f}.", highlight=False)
@@ -77,9 +79,13 @@ def _reason(opening: Opening, step: SearchStep) -> str:
     count, value = len(step.candidates), step.value
     if opening.scenario.arm(opening.briefing.arm).planner == "random":
         return f"it picked one of {count} poses at random"
-    runner_up = max((float(other) for index, other in enumerate(step.values) if index != step.chosen), default=0.0)
+    runner_up = max(
+        (float(other) for index, other in enumerate(step.values) if index != step.chosen), default=0.0
+    )
     rank = step.ranking.index(step.chosen) + 1
-    return f"its view is worth {value:.1f}, rank {rank} of {count} poses; the runner-up is worth {runner_up:.1f}"
+    return (
+        f"its view is worth {value:.1f}, rank {rank} of {count} poses; the runner-up is worth {runner_up:.1f}"
+    )
 
 
 def _seen(step: SearchStep, target: str) -> str:
@@ -88,7 +94,9 @@ def _seen(step: SearchStep, target: str) -> str:
     if not step.detections:
         return f"saw nothing it knows, no {target}"
     things = ", ".join(_thing(seen) for seen in step.detections)
-    return f"saw {things}" + ("" if any(seen.kind == target for seen in step.detections) else f"; no {target}")
+    return f"saw {things}" + (
+        "" if any(seen.kind == target for seen in step.detections) else f"; no {target}"
+    )
 
 
 def _thing(seen: Detection) -> str:

@@ -22,21 +22,31 @@ RUNS = Path("runs")
 
 
 def search(
-    scenario: Annotated[str, typer.Argument(metavar="SCENARIO", help="A shipped name, or a path that ends in .toml.")],
+    scenario: Annotated[
+        str, typer.Argument(metavar="SCENARIO", help="A shipped name, or a path that ends in .toml.")
+    ],
     arm: Annotated[str, typer.Option(help="The search method, one of the scenario's arms.")] = "qsr",
     target: Annotated[str | None, typer.Option(help="The class sought, the scenario's by default.")] = None,
     seed: Annotated[int, typer.Option(min=0, help="Seed of all random numbers.")] = 0,
-    trial: Annotated[int, typer.Option(min=0, help="Which trial of a comparison with this seed to replay.")] = 0,
-    variant: Annotated[str | None, typer.Option(help="Which objects are there; the first variant by default.")] = None,
+    trial: Annotated[
+        int, typer.Option(min=0, help="Which trial of a comparison with this seed to replay.")
+    ] = 0,
+    variant: Annotated[
+        str | None, typer.Option(help="Which objects are there; the first variant by default.")
+    ] = None,
     camera: Annotated[str | None, typer.Option(help="A camera preset in place of the scenario's.")] = None,
     robot: Annotated[str | None, typer.Option(help="A robot preset in place of the scenario's.")] = None,
-    output: Annotated[Path | None, typer.Option(help="Folder of the pictures, under runs/ by default.")] = None,
+    output: Annotated[
+        Path | None, typer.Option(help="Folder of the pictures, under runs/ by default.")
+    ] = None,
     pictures: Annotated[bool, typer.Option(help="Draw a picture of every step.")] = True,
     form: OutputFormat = Format.TEXT,
 ) -> None:
     """Search for an object once and tell every step: what is believed, where it looks, why, what it saw."""
     opening = open_search(load_scenario(scenario, camera, robot), target, arm, variant)
-    folder = _folder(output or RUNS / f"search-{opening.scenario.name}-{arm}-seed-{seed}") if pictures else None
+    folder = (
+        _folder(output or RUNS / f"search-{opening.scenario.name}-{arm}-seed-{seed}") if pictures else None
+    )
     console = Console(quiet=form is Format.JSON)
     narrate_opening(console, opening, seed)
     steps: list[SearchStep] = []

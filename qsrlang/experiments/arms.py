@@ -56,7 +56,11 @@ class TrialWorker:
 
 
 def run_trial(
-    world: World, briefing: Briefing, reachable: NavigationGrid, seeds: TrialSeeds, watch: Watcher | None = None
+    world: World,
+    briefing: Briefing,
+    reachable: NavigationGrid,
+    seeds: TrialSeeds,
+    watch: Watcher | None = None,
 ) -> SearchResult:
     """Return what a robot with this briefing does in the world, from where it stands."""
     return search(world, briefing.planner, reachable, briefing.target, briefing.limits, seeds, watch)

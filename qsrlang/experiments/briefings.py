@@ -25,7 +25,6 @@ from qsrlang.search.planners import Planner, make_planner
 QSR = "qsr"
 
 
-
 @dataclass(frozen=True, slots=True, eq=False)
 class Briefing:
     """What the robot of an arm knows: the target's class, supports and their weights (K,), landmarks and beliefs.

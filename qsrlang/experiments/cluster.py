@@ -10,7 +10,7 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import islice
-from typing import Generic, Protocol, TypeVar
+from typing import Any, Protocol, TypeVar, cast
 
 from qsrlang.errors import QSRError, ValueRangeError
 
@@ -18,7 +18,6 @@ MAX_PROCESSES = 256
 JOBS_IN_HAND = 4
 
 SetupT = TypeVar("SetupT")
-SetupT_contra = TypeVar("SetupT_contra", contravariant=True)
 JobT = TypeVar("JobT")
 JobT_contra = TypeVar("JobT_contra", contravariant=True)
 DoneT = TypeVar("DoneT")
@@ -72,27 +71,23 @@ def _together(
     pool = ProcessPoolExecutor(processes, context, _start, (make, setup))
     try:
         with _interrupts_kept_from_children():
-            running = _submit(pool, islice(waiting, processes * JOBS_IN_HAND))
+            running = {pool.submit(_do, job) for job in islice(waiting, processes * JOBS_IN_HAND)}
         while running:
             done, running = wait(running, return_when=FIRST_COMPLETED)
-            running |= _submit(pool, islice(waiting, len(done)))
+            running |= {pool.submit(_do, job) for job in islice(waiting, len(done))}
             for future in done:
-                yield _unpacked(future)
+                yield cast(DoneT, _unpacked(future))
     except BrokenProcessPool:
         raise QSRError("a process ended before its time; try again with fewer --processes") from None
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
 
 
-def _submit(pool: ProcessPoolExecutor, jobs: Iterator[JobT]) -> set[Future[object]]:
-    return {pool.submit(_do, job) for job in jobs}
-
-
-def _unpacked(future: Future[object]) -> DoneT:
+def _unpacked(future: Future[_Done | _Failed]) -> object:
     outcome = future.result()
     if isinstance(outcome, _Failed):
         raise QSRError(outcome.message)
-    return outcome.value  # type: ignore[union-attr]
+    return outcome.value
 
 
 @contextmanager
@@ -109,8 +104,8 @@ def _interrupts_kept_from_children() -> Iterator[None]:
 
 
 @dataclass(frozen=True, slots=True)
-class _Done(Generic[DoneT]):
-    value: DoneT
+class _Done:
+    value: object
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,19 +116,19 @@ class _Failed:
 class _Seat:
     """The worker of this process, or why it could not be made."""
 
-    worker: Worker[object, object] | None = None
+    worker: Worker[Any, object] | None = None
     problem: str = "the worker was not made"
 
 
 def _start(make: Callable[[SetupT], Worker[JobT, DoneT]], setup: SetupT) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
-        _Seat.worker = make(setup)  # type: ignore[assignment]
+        _Seat.worker = make(setup)
     except QSRError as error:
         _Seat.problem = str(error)
 
 
-def _do(job: object) -> _Done[object] | _Failed:
+def _do(job: object) -> _Done | _Failed:
     if _Seat.worker is None:
         return _Failed(_Seat.problem)
     try:

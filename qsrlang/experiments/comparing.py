@@ -44,7 +44,9 @@ def compare(
     for name in chosen:
         loaded.arm(name)
     if not chosen or not 1 <= trials <= MAX_TRIALS:
-        raise ValueRangeError("the number of trials", trials if chosen else 0, f"1 to {MAX_TRIALS}, of at least one arm")
+        raise ValueRangeError(
+            "the number of trials", trials if chosen else 0, f"1 to {MAX_TRIALS}, of at least one arm"
+        )
     made = experiment_of(loaded, seed, variant, target)
     jobs = [TrialJob(arm, number) for number in range(trials) for arm in chosen]
     with _recording(output, made) as recording:
@@ -55,7 +57,9 @@ def compare(
     return Comparison(made, chosen, trials, results)
 
 
-def experiment_of(scenario: Scenario, seed: int, variant: str | None = None, target: str | None = None) -> Experiment:
+def experiment_of(
+    scenario: Scenario, seed: int, variant: str | None = None, target: str | None = None
+) -> Experiment:
     """Return what the rows of a comparison's file have in common."""
     if seed < 0:
         raise ValueRangeError("the seed", seed, "a whole number of at least 0")

@@ -69,13 +69,24 @@ class Recording:
         """Write the file anew, whole and sorted: arms in the given order, others after them by name."""
         self._file.close()
         place = {arm: number for number, arm in enumerate(arms)}
-        self._write_whole(sorted(trials, key=lambda trial: (place.get(trial.arm, len(place)), trial.arm, trial.number)))
+        self._write_whole(
+            sorted(trials, key=lambda trial: (place.get(trial.arm, len(place)), trial.arm, trial.number))
+        )
 
     def _row(self, trial: Trial) -> tuple[str, ...]:
         experiment = tuple(str(getattr(self._experiment, name)) for name in EXPERIMENT_COLUMNS)
         seconds, travel = (f"{value:.{DECIMALS}f}" for value in (trial.seconds, trial.travel))
         found = "1" if trial.found else "0"
-        return (*experiment, trial.arm, str(trial.number), found, seconds, str(trial.poses), travel, trial.detected)
+        return (
+            *experiment,
+            trial.arm,
+            str(trial.number),
+            found,
+            seconds,
+            str(trial.poses),
+            travel,
+            trial.detected,
+        )
 
     def _write_whole(self, trials: Iterable[Trial]) -> None:
         text = _lines([HEADER, *(self._row(trial) for trial in trials)])
@@ -120,18 +131,24 @@ def _text(path: Path) -> str:
             raise FileError(path, f"larger than {MAX_BYTES} bytes", "give another file to --output")
         return path.read_text(encoding="utf-8")
     except OSError as error:
-        raise FileError(path, (error.strerror or "cannot be read").lower(), "give another file to --output") from None
+        raise FileError(
+            path, (error.strerror or "cannot be read").lower(), "give another file to --output"
+        ) from None
     except UnicodeDecodeError:
         raise FileError(path, "not a text file", "give another file to --output") from None
 
 
 def _trial(path: Path, number: int, row: list[str], experiment: Experiment) -> Trial:
     if len(row) != len(HEADER):
-        raise FileError(path, f"line {number} has {len(row)} fields of {len(HEADER)}", "mend or delete the file")
+        raise FileError(
+            path, f"line {number} has {len(row)} fields of {len(HEADER)}", "mend or delete the file"
+        )
     _check_experiment(path, row, experiment)
     arm, trial, found, seconds, poses, travel, name = row[len(EXPERIMENT_COLUMNS) :]
     try:
-        return Trial(arm, int(trial), {"0": False, "1": True}[found], float(seconds), int(poses), float(travel), name)
+        return Trial(
+            arm, int(trial), {"0": False, "1": True}[found], float(seconds), int(poses), float(travel), name
+        )
     except (ValueError, KeyError):
         raise FileError(path, f"line {number} cannot be understood", "mend or delete the file") from None
 
@@ -154,4 +171,6 @@ def _lines(rows: Iterable[Sequence[str]]) -> str:
 
 
 def _unwritable(path: Path, error: OSError) -> FileError:
-    return FileError(path, f"cannot be written: {(error.strerror or 'no reason given').lower()}", "give another --output")
+    return FileError(
+        path, f"cannot be written: {(error.strerror or 'no reason given').lower()}", "give another --output"
+    )

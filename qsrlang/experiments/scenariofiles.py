@@ -49,7 +49,7 @@ class StartEntry(Entry):
 class PlacementEntry(Entry):
     """An object that is truly there: its centre in the map frame, and its size [m].
 
-    Without `z` it is let down from above onto the highest surface at its place.
+    It is let down onto the surface below `z`; without `z`, onto the highest one that an arm reaches.
     """
 
     name: Name
@@ -76,13 +76,13 @@ class ScenarioEntry(Entry):
     map: MapEntry
     start: StartEntry
     knowledge: str
-    landmarks: Annotated[list[str], Field(max_length=MAX_PLACEMENTS)] = []
+    landmarks: list[str] = Field(default_factory=list, max_length=MAX_PLACEMENTS)
     robot: str
     camera: str
     preset: str
     limits: LimitsEntry | None = None
     placements: Annotated[list[PlacementEntry], Field(min_length=1, max_length=MAX_PLACEMENTS)]
-    variants: Annotated[dict[Name, list[Name]], Field(max_length=MAX_ARMS)] = {}
+    variants: dict[Name, list[Name]] = Field(default_factory=dict, max_length=MAX_ARMS)
     arms: Annotated[dict[Name, ArmEntry], Field(min_length=1, max_length=MAX_ARMS)]
 
     @model_validator(mode="after")

@@ -178,7 +178,13 @@ def _variants(entry: ScenarioEntry) -> dict[str, tuple[str, ...]]:
 
 def _fingerprint(entry: ScenarioEntry, made: Scenario) -> str:
     arms = made.arms.values()
-    said = [entry.model_dump_json(), repr(made.camera), repr(made.robot), repr(made.body), *(repr(arm.preset) for arm in arms)]
+    said = [
+        entry.model_dump_json(),
+        repr(made.camera),
+        repr(made.robot),
+        repr(made.body),
+        *(repr(arm.preset) for arm in arms),
+    ]
     digest = hashlib.sha256("\n".join(said).encode())
     for path in sorted({knowledge_file(arm.knowledge) for arm in arms} | set(_files(made.place))):
         digest.update(path.read_bytes() if path.is_file() else b"")
@@ -188,7 +194,11 @@ def _fingerprint(entry: ScenarioEntry, made: Scenario) -> str:
 def _files(place: MapFiles | str) -> Iterable[Path]:
     if isinstance(place, MapFiles):
         return place.occupancy, place.octomap
-    return (Path(place) if place.endswith(".toml") else resource_root("knowledge") / "worlds" / "rooms" / f"{place}.toml",)
+    return (
+        Path(place)
+        if place.endswith(".toml")
+        else resource_root("knowledge") / "worlds" / "rooms" / f"{place}.toml",
+    )
 
 
 def _named(kind: str, name: str, known: Mapping[str, NamedT]) -> NamedT:

@@ -33,7 +33,9 @@ def wilson_interval(successes: int, trials: int, confidence: float = CONFIDENCE)
     Raises ValueRangeError unless 0 <= successes <= trials and trials > 0.
     """
     if trials < 1 or not 0 <= successes <= trials:
-        raise ValueRangeError("the count of successes", f"{successes} of {trials}", "0 to the number of trials")
+        raise ValueRangeError(
+            "the count of successes", f"{successes} of {trials}", "0 to the number of trials"
+        )
     z = NormalDist().inv_cdf(0.5 * (1.0 + _checked(confidence)))
     rate = successes / trials
     centre = rate + z * z / (2 * trials)
@@ -56,7 +58,9 @@ def bootstrap_interval(
     if sample.ndim != 1 or len(sample) == 0:
         raise ValueRangeError("the shape of the values of a mean", sample.shape, "(N,) with N of at least 1")
     tail = 0.5 * (1.0 - _checked(confidence))
-    low, high = np.quantile(_resampled_means(sample, np.random.default_rng(seed), resamples), [tail, 1.0 - tail])
+    low, high = np.quantile(
+        _resampled_means(sample, np.random.default_rng(seed), resamples), [tail, 1.0 - tail]
+    )
     return Interval(float(low), float(high))
 
 
@@ -71,7 +75,9 @@ def paired_interval(
 def _resampled_means(sample: FloatArray, rng: np.random.Generator, resamples: int) -> FloatArray:
     rows = max(1, MAX_DRAWS_AT_ONCE // len(sample))
     chunks = [min(rows, resamples - first) for first in range(0, resamples, rows)]
-    return np.concatenate([sample[rng.integers(len(sample), size=(n, len(sample)))].mean(axis=1) for n in chunks])
+    return np.concatenate(
+        [sample[rng.integers(len(sample), size=(n, len(sample)))].mean(axis=1) for n in chunks]
+    )
 
 
 def _checked(confidence: float) -> float:

@@ -28,7 +28,9 @@ class Opening:
         """Search in a world made for this one search; `watch` is called with every step once it is over."""
         with build_world(self.scenario, self.place, self.variant) as world:
             seeds = TrialSeeds(seed, trial)
-            return SearchStory(self, seed, trial, run_trial(world, self.briefing, self.place.reachable, seeds, watch))
+            return SearchStory(
+                self, seed, trial, run_trial(world, self.briefing, self.place.reachable, seeds, watch)
+            )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -77,7 +79,10 @@ class SearchStory:
 
 
 def open_search(
-    scenario: str | Path | Scenario, target: str | None = None, planner: str = "qsr", variant: str | None = None
+    scenario: str | Path | Scenario,
+    target: str | None = None,
+    planner: str = "qsr",
+    variant: str | None = None,
 ) -> Opening:
     """Return a search that is about to begin; `planner` names an arm of the scenario. Raises QSRError."""
     loaded = scenario if isinstance(scenario, Scenario) else load_scenario(scenario)

@@ -34,7 +34,9 @@ def read_entry(path: Path, model: type[EntryT]) -> EntryT:
 def _table(path: Path) -> dict[str, Any]:
     try:
         if path.stat().st_size > MAX_BYTES:
-            raise FileError(path, f"larger than {MAX_BYTES} bytes", "such a file is not one of ours; give another")
+            raise FileError(
+                path, f"larger than {MAX_BYTES} bytes", "such a file is not one of ours; give another"
+            )
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise FileError(path, (error.strerror or "cannot be read").lower(), "check the path") from None
@@ -51,7 +53,9 @@ def _file_error(path: Path, error: ValidationError, model: type[Entry]) -> FileE
     place = tuple(part for part in first["loc"] if not _is_union_branch(part))
     field = ".".join(str(part) for part in place) or "the whole file"
     if first["type"] == "extra_forbidden":
-        return FileError(path, f"unknown field '{field}'{more}", f"remove it or use {_fields(model, first['loc'])}")
+        return FileError(
+            path, f"unknown field '{field}'{more}", f"remove it or use {_fields(model, first['loc'])}"
+        )
     if first["type"] == "missing":
         return FileError(path, f"the field '{field}' is missing{more}", "add it")
     problem = _one_line(first["msg"]).removeprefix("Value error, ")

@@ -15,7 +15,7 @@ from qsrlang.geometry.pose import Pose2
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ConvexPolygon:
-    """A convex polygon given by its corners (K, 2) [m], counter-clockwise; `normals` (K, 2) are its inward unit normals."""
+    """A convex polygon by its corners (K, 2) [m], counter-clockwise; `normals` (K, 2) point inwards, one per edge."""
 
     corners: FloatArray
     normals: FloatArray = field(init=False)

@@ -4,32 +4,14 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 from qsrlang.language import syntax as s
-from qsrlang.language.diagnostics import Diagnostic, Label, Severity
 from qsrlang.relations.calculus import MAX_CONJUNCTIONS, NoOpposite, TooManyConjunctions, conjunctions
-from qsrlang.relations.graph import (
-    Alternative,
-    AtomicRelation,
-    Authority,
-    Choice,
-    Constraint,
-    Pair,
-    Statement,
-)
+from qsrlang.relations.graph import AtomicRelation, Choice, Constraint, Pair, Statement
+from qsrlang.relations.precedence import Evidence, settle
 from qsrlang.relations.symbols import Symbols
 
 _SHARE_SLACK = 1e-9
-
-
-@dataclass(frozen=True, slots=True)
-class Evidence:
-    """One alternative that a statement names, with its share or count, and the statement's place."""
-
-    weight: float
-    constraints: tuple[Constraint, ...]
-    node: s.Node
 
 
 def build_choices(statements: Iterable[s.Statement], symbols: Symbols) -> tuple[Choice, ...]:
@@ -50,36 +32,7 @@ def build_choices(statements: Iterable[s.Statement], symbols: Symbols) -> tuple[
                 _check_members(statement, symbols)
                 count = seen.get(statement.name.text, 1.0) if statement.name else 1.0
                 scenes.extend(_evidence(count, statement.formula, None, statement, symbols))
-    return _settle(beliefs, counts, scenes, symbols)
-
-
-def _settle(
-    beliefs: list[tuple[s.Believe, list[Evidence]]],
-    counts: list[Evidence],
-    scenes: list[Evidence],
-    symbols: Symbols,
-) -> tuple[Choice, ...]:
-    by_pair = _by_pair(counts, symbols)
-    governed: dict[Pair, s.Node] = {}
-    choices = []
-    for believe, alternatives in beliefs:
-        pairs = _pairs(alternatives, symbols)
-        _refuse_second(believe, pairs, governed, symbols)
-        updates = by_pair.get(next(iter(pairs)), []) if len(pairs) == 1 else []
-        choices.append(Choice(Authority.SHARE, frozenset(pairs), _updated(alternatives, updates, symbols)))
-    for pair, evidence in by_pair.items():
-        if pair in governed:
-            _tell_override(pair, evidence, governed[pair], symbols)
-        else:
-            choices.append(Choice(Authority.COUNT, frozenset([pair]), _shares(evidence)))
-            governed[pair] = evidence[0].node
-    for pair, evidence in _by_pair(scenes, symbols).items():
-        if pair in governed:
-            _tell_override(pair, evidence, governed[pair], symbols)
-        else:
-            free = [_without(one, governed, symbols) for one in evidence]
-            choices.append(Choice(Authority.SCENE, frozenset([pair]), _shares(free)))
-    return tuple(choices)
+    return settle(beliefs, counts, scenes, symbols)
 
 
 def _belief(believe: s.Believe, symbols: Symbols) -> list[Evidence]:
@@ -202,83 +155,3 @@ def _atoms(formula: s.Formula) -> Iterable[s.Atom]:
         case s.And(parts=parts) | s.Or(parts=parts):
             for part in parts:
                 yield from _atoms(part)
-
-
-def _class_pair(constraint: Constraint, symbols: Symbols) -> Pair:
-    names = (constraint.referent, constraint.relatum)
-    first, second = (symbols.landmarks[n].kind if n in symbols.landmarks else n for n in names)
-    return first, second
-
-
-def _pairs(evidence: Iterable[Evidence], symbols: Symbols) -> set[Pair]:
-    return {_class_pair(constraint, symbols) for one in evidence for constraint in one.constraints}
-
-
-def _by_pair(evidence: Iterable[Evidence], symbols: Symbols) -> dict[Pair, list[Evidence]]:
-    grouped: dict[Pair, list[Evidence]] = defaultdict(list)
-    for one in evidence:
-        for pair in dict.fromkeys(_class_pair(constraint, symbols) for constraint in one.constraints):
-            grouped[pair].append(one)
-    return grouped
-
-
-def _without(one: Evidence, governed: dict[Pair, s.Node], symbols: Symbols) -> Evidence:
-    kept = tuple(c for c in one.constraints if _class_pair(c, symbols) not in governed)
-    return Evidence(one.weight, kept, one.node)
-
-
-def _shares(evidence: list[Evidence]) -> tuple[Alternative, ...]:
-    total = sum(one.weight for one in evidence)
-    return tuple(Alternative(one.weight / total, one.constraints) for one in evidence if one.weight > 0.0)
-
-
-def _updated(beliefs: list[Evidence], counts: list[Evidence], symbols: Symbols) -> tuple[Alternative, ...]:
-    """Dirichlet update: share = (strength x share + count) / (strength + all counts); fits refine their atoms."""
-    strength = symbols.defaults["strength"]
-    total = strength + sum(one.weight for one in counts)
-    keyed: dict[object, list[Evidence]] = defaultdict(list)
-    for one in counts:
-        keyed[_key(one)].append(one)
-    found = []
-    for belief in beliefs:
-        matching = keyed.pop(_key(belief), [])
-        share = (strength * belief.weight + sum(one.weight for one in matching)) / total
-        found += _refined(belief, share, [one for one in matching if one.constraints[0].fit])
-    found += [Alternative(one.weight / total, one.constraints) for group in keyed.values() for one in group]
-    return tuple(alternative for alternative in found if alternative.share > 0.0)
-
-
-def _refined(belief: Evidence, share: float, fitted: list[Evidence]) -> list[Alternative]:
-    count = sum(one.weight for one in fitted)
-    if count == 0.0:
-        return [Alternative(share, belief.constraints)]
-    return [Alternative(share * one.weight / count, one.constraints) for one in fitted]
-
-
-def _key(evidence: Evidence) -> object:
-    return frozenset(
-        (c.referent, c.relatum, frozenset((a.relation.name, a.frame) for a in c.atoms))
-        for c in evidence.constraints
-    )
-
-
-def _refuse_second(
-    believe: s.Believe, pairs: set[Pair], governed: dict[Pair, s.Node], symbols: Symbols
-) -> None:
-    for pair in sorted(pairs):
-        if pair in governed:
-            label = Label(governed[pair].span, "first believed here")
-            message = f"two beliefs speak of {pair[0]} and {pair[1]}"
-            symbols.diagnostics.append(Diagnostic("Q403", message, believe.span, labels=(label,)))
-        governed.setdefault(pair, believe)
-
-
-def _tell_override(pair: Pair, evidence: list[Evidence], winner: s.Node, symbols: Symbols) -> None:
-    if isinstance(winner, s.Believe) and isinstance(evidence[0].node, s.Observe):
-        return
-    for node in {id(one.node): one.node for one in evidence}.values():
-        label = Label(winner.span, "this wins")
-        message = f"what is said of {pair[0]} and {pair[1]} is overridden"
-        symbols.diagnostics.append(
-            Diagnostic("Q601", message, node.span, labels=(label,), severity=Severity.INFO)
-        )

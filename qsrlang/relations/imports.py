@@ -28,7 +28,9 @@ class Library:
 def read_library(source: Source) -> Library:
     """Read a source with all it imports, each file once, so cycles are fine."""
     core = read_source(resource_path("knowledge", "core.qsr"))
-    is_core = source.path is not None and source.path.resolve() == resource_path("knowledge", "core.qsr").resolve()
+    is_core = (
+        source.path is not None and source.path.resolve() == resource_path("knowledge", "core.qsr").resolve()
+    )
     waiting = deque([source] if is_core else [core, source])
     seen = {one.path.resolve() for one in waiting if one.path}
     documents: list[Document] = []

@@ -13,7 +13,11 @@ from qsrlang.mixtures.gaussian import GaussianMixture
 
 
 def voxel_weights(
-    mixture: GaussianMixture | None, voxels_map: npt.ArrayLike, floor: float, gain: float, claimed: float = 1.0
+    mixture: GaussianMixture | None,
+    voxels_map: npt.ArrayLike,
+    floor: float,
+    gain: float,
+    claimed: float = 1.0,
 ) -> FloatArray:
     """Return P_QSR(v_i) = floor + gain * claimed * p(x_i), the weight of each support voxel: (K,).
 

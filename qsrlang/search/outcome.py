@@ -96,4 +96,6 @@ class SearchResult:
 
     def __post_init__(self) -> None:
         if self.found != (self.detection is not None):
-            raise ValueRangeError("the outcome of a search", self.found, "a detection exactly where one was found")
+            raise ValueRangeError(
+                "the outcome of a search", self.found, "a detection exactly where one was found"
+            )

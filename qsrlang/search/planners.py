@@ -13,7 +13,6 @@ from qsrlang.geometry.pose import Pose2
 from qsrlang.geometry.viewcone import ViewCone
 from qsrlang.search.visibility import view_values
 
-
 PlannerName = Literal["random", "planes", "qsr"]
 
 

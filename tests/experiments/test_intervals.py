@@ -34,7 +34,7 @@ def test_wilson_solves_the_equation_of_the_score_test(trials, data):
 
 
 def test_wilson_covers_the_truth_as_often_as_it_says():
-    """4,000 fixed experiments of 40 trials: the exact coverage at p = 0.3 is 0.953; outside [0.94, 0.966] once in 10^4."""
+    """4,000 fixed experiments of 40 trials, exact coverage 0.953: outside [0.94, 0.966] for one seed in 10^4."""
     counts = np.random.default_rng(3).binomial(40, 0.3, 4_000)
     bounds = {count: wilson_interval(int(count), 40) for count in np.unique(counts)}
     covered = np.mean([bounds[count].low <= 0.3 <= bounds[count].high for count in counts])
@@ -72,7 +72,7 @@ def test_paired_differences_are_narrower_than_the_arms():
     shared = rng.normal(50, 20, 200)
     slower, faster = shared + 5 + rng.normal(0, 1, 200), shared
     interval, alone = paired_interval(slower, faster), bootstrap_interval(slower)
-    assert 0 < interval.low < 5.2 and 4.8 < interval.high
+    assert 0 < interval.low < 5.2 and interval.high > 4.8
     assert interval.high - interval.low < 0.2 * (alone.high - alone.low)
 
 

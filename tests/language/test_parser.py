@@ -107,7 +107,7 @@ def test_any_text_gives_diagnostics_and_no_other_exception(text):
 
 
 @given(
-    st.lists(st.sampled_from(list(" .,:()|{}~∧¬⇔×\n") + ["believe ", "left-of", "Cup", "3 cm", "scene", "#"]))
+    st.lists(st.sampled_from([*" .,:()|{}~∧¬⇔×\n", "believe ", "left-of", "Cup", "3 cm", "scene", "#"]))
 )
 def test_any_row_of_words_gives_diagnostics_and_no_other_exception(words):
     for finding in qsr.parse("".join(words)).diagnostics:

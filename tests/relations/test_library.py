@@ -71,6 +71,24 @@ def test_an_overridden_statement_is_told_as_information():
 
 
 def test_a_dynamic_landmark_and_an_undeclared_class_are_warnings():
-    known = qsr.parse_knowledge("scene(Cup, Plate) ⇔ left-of(Cup, Plate). landmark p : Plate at (0 m, 0 m) facing 0 deg.")
+    known = qsr.parse_knowledge(
+        "scene(Cup, Plate) ⇔ left-of(Cup, Plate). landmark p : Plate at (0 m, 0 m) facing 0 deg."
+    )
     assert [finding.code for finding in known.diagnostics] == ["Q502", "Q501"]
     assert len(known.where("Cup").weights) == 1
+
+
+def test_what_nobody_saw_says_nothing():
+    text = "dynamic Cup. static M { front: yes }. observe 0 × left-of(Cup, M). observe 2 × right-of(Cup, M)."
+    assert len(qsr.parse_knowledge(text).where("Cup").weights) == 1
+
+
+def test_a_belief_on_one_pair_leaves_the_other_pairs_of_an_observation_alone():
+    text = (
+        "dynamic A, B. static M { front: yes }. believe left-of(A, M)."
+        "observe right-of(A, M) ∧ behind-of(B, A) ∧ close-to(B, A)."
+    )
+    known = qsr.parse_knowledge(text)
+    assert [finding.code for finding in known.diagnostics] == []
+    answer = known.where("B", {"M": qsr.Pose2(0.0, 0.0, 3.14159)})
+    assert len(answer.weights) == 2, "the belief, updated by the observation"

@@ -108,7 +108,7 @@ def test_in_view_tells_which_voxels():
 )
 def test_moving_room_and_robot_together_changes_nothing(seed, motion):
     rng = np.random.default_rng(seed)
-    poses, cone, voxels, weights = random_case(rng)
+    poses, cone, voxels, _ = random_case(rng)
     clear = [[looked_at(pose, cone, voxel) is not None for voxel in voxels] for pose in poses]
     moved = np.column_stack([motion.transform(poses[:, :2]), poses[:, 2] + motion.yaw])
     before, after = in_view(poses, cone, voxels), in_view(moved, cone, motion.transform(voxels))
