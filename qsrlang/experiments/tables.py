@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from rich.markup import escape
 from rich.table import Table
 
 from qsrlang.experiments.statistics import Interval
@@ -18,12 +19,12 @@ def comparison_table(comparison: Comparison) -> Table:
     title = f"{made.scenario}, variant {made.variant}: {comparison.trials} trials an arm, seed {made.seed}"
     caption = (
         f"camera {made.camera}, robot {made.robot}, target {made.target}; 95 % intervals: Wilson, bootstrap; "
-        "* means over the trials that found it"
+        "* mean over the trials that found it; censored: a failure counts as the time limit"
     )
     table = Table(title=title, caption=caption)
     table.add_column("arm")
-    for heading in ("found", "time* [s]", "time, failures at the limit [s]", "poses*", "travel [m]"):
-        table.add_column(heading, justify="right")
+    for heading in ("found", "time* [s]", "censored time [s]", "poses*", "travel [m]"):
+        table.add_column(escape(heading), justify="right")
     for arm, summary in comparison.summaries.items():
         table.add_row(arm, *_cells(summary))
     return table
@@ -63,7 +64,7 @@ def _number(value: float | None) -> str:
 
 
 def _bracket(interval: Interval | None, scale: float = 1.0) -> str:
-    return "" if interval is None else f"\\[{scale * interval.low:.1f}, {scale * interval.high:.1f}]"
+    return "" if interval is None else escape(f"[{scale * interval.low:.1f}, {scale * interval.high:.1f}]")
 
 
 def _plain(summary: ArmSummary) -> dict[str, Any]:

@@ -48,7 +48,7 @@ def _table(path: Path) -> dict[str, Any]:
 
 def _file_error(path: Path, error: ValidationError, model: type[Entry]) -> FileError:
     problems = error.errors(include_url=False, include_context=False)
-    first = problems[0]
+    first = next((one for one in problems if one["type"] == "extra_forbidden"), problems[0])
     more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
     place = tuple(part for part in first["loc"] if not _is_union_branch(part))
     field = ".".join(str(part) for part in place) or "the whole file"

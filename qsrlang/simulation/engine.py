@@ -77,7 +77,7 @@ class Engine:
         self._open = True
         self.concave: tuple[int, ...] = ()
         self.call("setGravity", 0.0, 0.0, -GRAVITY)
-        self.call("setPhysicsEngineParameter", deterministicOverlappingPairs=1)
+        self.call("setPhysicsEngineParameter", deterministicOverlappingPairs=1, enableFileCaching=0)
 
     def call(self, name: str, *arguments: Any, **named: Any) -> Any:
         """Call one function of pybullet in this server."""

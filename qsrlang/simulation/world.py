@@ -152,6 +152,10 @@ class PybulletWorld:
         """Return which of `objects` (K) a look from each of the poses (N, 3) would show: (N, K)."""
         return self._camera.visible(np.asarray(poses, dtype=np.float64))
 
+    def visible_fractions(self, poses: FloatArray) -> FloatArray:
+        """Return the share (N, K) of each of `objects` that nothing hides, by 27 rays, from poses (N, 3)."""
+        return self._camera.visible_fractions(np.asarray(poses, dtype=np.float64))
+
     def depth_image(self, width: int = 320, height: int = 240) -> DepthImage:
         """Return what a depth camera in the place of the robot's camera sees now."""
         with self.robot_out_of(None):

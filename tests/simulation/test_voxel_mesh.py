@@ -97,6 +97,18 @@ def test_rays_meet_the_mesh_where_the_voxels_are(tmp_path):
     assert hits.points[met, 2] == pytest.approx((highest[met] + 1) * 0.1, abs=1e-6)
 
 
+def test_a_file_that_was_written_anew_is_read_anew(tmp_path):
+    top = []
+    with Engine() as engine:
+        for height in (1, 3):
+            solid = np.ones((2, 2, height), dtype=bool)
+            write_obj(mesh_of(solid, 0.1, np.zeros(3)), tmp_path / "solid.obj")
+            engine.add_mesh(tmp_path / "solid.obj", (1.0, 1.0, 1.0))
+            hits = engine.rays(np.array([[0.07, 0.11, 2.0]]), np.array([[0.07, 0.11, -1.0]]))
+            top.append(hits.points[0, 2])
+    assert top == pytest.approx([0.1, 0.3], abs=1e-6)
+
+
 def test_boxes_are_cut_out():
     grid = VoxelGrid(np.full((10, 10, 10), 2, dtype=np.uint8), 0.1, np.zeros(3), "full")
     left = clear_boxes(grid, [[[0.42, 0.42, 0.52], [0.58, 0.58, 0.68]]])

@@ -1,0 +1,123 @@
+"""Every picture and every table of docs/, made anew: `make docs`, or `make docs ARGS="--trials 20"` for a quick look.
+
+What needs the folder of real maps ($QSR_DATA) is left as it is where that folder is absent.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import os
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from matplotlib.image import imsave
+
+import qsrlang as qsr
+
+DOCS = Path(__file__).parent
+IMAGES = DOCS / "images"
+RESULTS = DOCS / "explanation" / "results.md"
+ARMS = ("random", "planes", "qsr", "relations")
+VARIANTS = ("A", "B", "C")
+CAMERAS = ("narrow", "wide")
+MONITOR = "monitor-1 : Monitor at (0 m, 0 m) facing -90 deg"
+DESK = "desk-1 : Desk at (0 m, -0.2 m) facing -90 deg"
+SEED = 1
+
+
+def draw_mixtures() -> None:
+    """Fig. 4: a cup with respect to a monitor and to a keyboard, and on a desk whose pose is known."""
+    known = qsr.load("office/desk")
+    for name in ("Monitor", "Keyboard"):
+        answer = known.ask(f"where Cup wrt {name}?")
+        qsr.save_figure(qsr.draw_answer(answer, known), IMAGES / f"cup-wrt-{name.lower()}.png")
+    placed = known.with_landmarks(MONITOR, DESK)
+    qsr.save_figure(qsr.draw_answer(placed.where("Cup"), placed), IMAGES / "cup-on-desk.png")
+
+
+def draw_room() -> None:
+    """The built-in room, from above and aslant."""
+    room = qsr.load_room("kitchen")
+    picture = qsr.scene_picture(room, (-4.5, -5.0, 9.5), (4.0, 5.6, 0.4), (900, 640))
+    imsave(IMAGES / "kitchen-room.png", np.asarray(picture))
+
+
+def draw_search(scenario: str, planner: str, seed: int, name: str) -> None:
+    """Figs. 6 to 8: the last step of a search, with all views it weighed."""
+    story = qsr.search(scenario, planner=planner, seed=seed)
+    qsr.save_figure(qsr.draw_story(story), IMAGES / f"{name}.png")
+
+
+def draw_supports() -> None:
+    """Fig. 5: the OctoMap of the paper's kitchen and its supporting planes."""
+    folder = qsr.data_root() / "tum_kitchen"
+    voxels = qsr.read_octomap(folder / "tum_kitchen_octomap.bt").voxel_grid()
+    occupancy = qsr.read_ros_map(folder / "tum_kitchen.yaml")
+    qsr.save_figure(qsr.draw_voxels(voxels, z_max=2.0), IMAGES / "tum-kitchen-octomap.png")
+    supports = qsr.find_supports(voxels, min_height=0.0, max_height=1.2, min_part=20)
+    qsr.save_figure(qsr.draw_map(occupancy, supports), IMAGES / "tum-kitchen-supports.png")
+
+
+def tell_comparisons(scenario: str, cameras: Sequence[str | None], trials: int, arms: Sequence[str]) -> None:
+    """Tables II and III, and the curves of finds over time."""
+    for camera in cameras:
+        for variant in VARIANTS:
+            loaded = qsr.load_scenario(scenario, camera)
+            result = qsr.compare(loaded, arms, trials, SEED, variant, processes=os.cpu_count() or 1)
+            mark = "-".join(filter(None, (scenario, camera, variant)))
+            option = f" --camera {camera}" if camera else ""
+            command = f"qsr compare {scenario} --arms {','.join(arms)} --trials {trials} --seed {SEED} --variant {variant}"
+            replace_table(mark, f"`{command}{option}`\n\n{markdown(result)}")
+            times = {arm: [t.seconds if t.found else math.inf for t in result.of(arm)] for arm in arms}
+            qsr.save_figure(qsr.draw_found_by_time(times, loaded.limits.seconds), IMAGES / f"found-{mark}.png")
+
+
+def markdown(result: qsr.Comparison) -> str:
+    """Return a comparison as a table of this document."""
+    lines = [
+        "| arm | found | mean s, found only | censored mean s | poses, found only | travel m |",
+        "|---|---|---|---|---|---|",
+    ]
+    for arm, one in result.summaries.items():
+        found = f"{one.found:.1%} [{one.found_ci.low:.1%}, {one.found_ci.high:.1%}]"
+        censored = f"{one.time_censored:.1f} [{one.time_ci.low:.1f}, {one.time_ci.high:.1f}]"
+        means = ["-" if mean is None else f"{mean:.1f}" for mean in (one.time_found, one.poses)]
+        lines.append(f"| {arm} | {found} | {means[0]} | {censored} | {means[1]} | {one.travel:.1f} |")
+    return "\n".join(lines)
+
+
+def replace_table(mark: str, text: str) -> None:
+    """Put a table between its two marks in results.md."""
+    page = RESULTS.read_text(encoding="utf-8")
+    pattern = re.compile(rf"(<!-- {mark} -->\n).*?(<!-- end -->)", re.DOTALL)
+    if not pattern.search(page):
+        raise SystemExit(f"{RESULTS} has no place for {mark}")
+    RESULTS.write_text(pattern.sub(lambda found: f"{found[1]}{text}\n{found[2]}", page), encoding="utf-8")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--trials", type=int, default=200)
+    parser.add_argument("--only", choices=("pictures", "tables"))
+    chosen = parser.parse_args()
+    IMAGES.mkdir(exist_ok=True)
+    has_data = (qsr.data_root() / "tum_kitchen").is_dir()
+    if chosen.only != "tables":
+        draw_mixtures()
+        draw_room()
+        draw_search("kitchen", "qsr", 7, "kitchen-search")
+        if has_data:
+            draw_supports()
+            draw_search("tum-kitchen", "planes", 2, "tum-kitchen-planes")
+            draw_search("tum-kitchen", "qsr", 2, "tum-kitchen-qsr")
+    if chosen.only != "pictures":
+        tell_comparisons("kitchen", [None], chosen.trials, ARMS[:3])
+        if has_data:
+            tell_comparisons("tum-kitchen", CAMERAS, chosen.trials, ARMS)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,89 @@
+import json
+
+import pytest
+import typer
+from typer.testing import CliRunner
+
+from qsrlang.cli.compare import compare
+from qsrlang.cli.search import search
+from qsrlang.errors import QSRError
+
+app = typer.Typer(pretty_exceptions_enable=False)
+app.command()(search)
+app.command()(compare)
+
+
+def run(*arguments):
+    return CliRunner().invoke(app, [str(argument) for argument in arguments])
+
+
+def test_search_tells_every_step_and_draws_it(cell, tmp_path):
+    result = run("search", cell, "--seed", 1, "--output", tmp_path / "pictures")
+    assert result.exit_code == 0
+    for part in (
+        "A table in a small room",
+        "Sought: Cup; arm qsr, variant both, camera wide, robot slow, seed 1.",
+        "It believes: where Cup is",
+        "Step 1",
+        "looks from (",
+        "rank 1 of 20 poses; the runner-up is worth",
+        "saw cup-",
+        "clock ",
+        "Search for Cup",
+        "found",
+    ):
+        assert part in result.output, part
+    assert (tmp_path / "pictures" / "step-01.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_search_as_json_says_the_same(cell, tmp_path):
+    result = run("search", cell, "--seed", 1, "--format", "json", "--output", tmp_path / "pictures")
+    story = json.loads(result.stdout)
+    assert (story["scenario"], story["arm"], story["target"], story["found"]) == ("cell", "qsr", "Cup", True)
+    assert story["poses"] == len(story["steps"]) == len(story["pictures"])
+    last = story["steps"][-1]
+    assert last["clock"] == pytest.approx(story["seconds"])
+    assert story["detection"] in last["detections"]
+    assert max(last["values"]) == last["value"]
+    assert story["belief"]["components"][0]["mean"] == pytest.approx([3.6, 1.8])
+
+
+def test_a_random_arm_has_no_reasons(cell, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    result = run("search", cell, "--arm", "random", "--no-pictures", "--variant", "one")
+    assert "It uses no relations." in result.output
+    assert "it picked one of 20 poses at random" in result.output
+    assert not (tmp_path / "runs").exists()
+
+
+def test_compare_prints_a_table_and_writes_every_trial(cell, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    result = run("compare", cell, "--arms", "qsr,random", "--trials", 3, "--seed", 2, "--processes", 1)
+    assert result.exit_code == 0
+    assert "cell, variant both: 3 trials an arm, seed 2" in result.stdout
+    path = tmp_path / "runs" / "cell-both-wide-slow-seed-2.csv"
+    assert path.read_text(encoding="utf-8").count("\n") == 7
+    assert "every trial: runs/cell-both-wide-slow-seed-2.csv" in result.stderr
+
+
+def test_compare_as_json_is_nothing_but_json(cell, tmp_path):
+    output = tmp_path / "t.csv"
+    result = run("compare", cell, "--arms", "qsr", "--trials", 2, "--output", output, "--processes", 1, "--format", "json")
+    data = json.loads(result.stdout)
+    assert (data["trials"], list(data["arms"]), data["camera"]) == (2, ["qsr"], "wide")
+
+
+def test_mistakes_are_errors_of_ours(cell, tmp_path):
+    (tmp_path / "file").write_text("")
+    for arguments in (
+        ("search", cell, "--arm", "greedy"),
+        ("search", "nowhere"),
+        ("search", cell, "--output", tmp_path / "file"),
+        ("compare", cell, "--arms", "qsr,greedy"),
+        ("compare", cell, "--variant", "D"),
+        ("compare", cell, "--camera", "none"),
+        ("compare", cell, "--output", cell),
+    ):
+        result = run(*arguments)
+        assert isinstance(result.exception, QSRError), arguments
+        assert "\n" not in str(result.exception)
