@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from qsrlang.arrays import FloatArray
-from qsrlang.errors import OutsideMapError, UnreachedTargetError
+from qsrlang.errors import OutsideMapError, UnknownNameError, UnreachedTargetError
 from qsrlang.experiments.places import Place
 from qsrlang.experiments.presets import PlannerEntry
 from qsrlang.experiments.scenarios import Arm, Scenario
@@ -106,6 +106,8 @@ def known_to(scenario: Scenario, arm: Arm, place: Place) -> KnowledgeBase:
 def _belief(known: KnowledgeBase, arm: Arm, target: str) -> Where:
     try:
         return known.where(target)
+    except UnknownNameError as error:
+        raise UnknownNameError(f"class of {arm.knowledge}:", error.name, error.known) from None
     except UnreachedTargetError as error:
         chains = error.chains or (f"no statement places {target}",)
         raise UnreachedTargetError(target, [f"{arm.knowledge}: {chain}" for chain in chains]) from None

@@ -84,13 +84,23 @@ band = [0.1, 1.8]
 """
 
 
+def written(folder):
+    for name, text in (("room", ROOM), ("cell", SCENARIO), ("slow", ROBOT)):
+        (folder / f"{name}.toml").write_text(text, encoding="utf-8")
+    (folder / "cups.qsr").write_text(KNOWLEDGE, encoding="utf-8")
+    return folder / "cell.toml"
+
+
 @pytest.fixture
 def cell(tmp_path):
     """The path of a scenario in a room of its own, all of whose files may be changed."""
-    for name, text in (("room", ROOM), ("cell", SCENARIO), ("slow", ROBOT)):
-        (tmp_path / f"{name}.toml").write_text(text, encoding="utf-8")
-    (tmp_path / "cups.qsr").write_text(KNOWLEDGE, encoding="utf-8")
-    return tmp_path / "cell.toml"
+    return written(tmp_path)
+
+
+@pytest.fixture(scope="session")
+def unchanged_cell(tmp_path_factory):
+    """The path of the same scenario, which nobody changes."""
+    return written(tmp_path_factory.mktemp("unchanged"))
 
 
 @pytest.fixture

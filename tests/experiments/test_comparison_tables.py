@@ -11,14 +11,21 @@ from qsrlang.experiments.tables import comparison_json, comparison_table
 from qsrlang.experiments.trials import Trial
 
 MADE = Experiment("kitchen", "A", "Cup", "narrow", "steady", 7, "0123456789ab")
-RANDOM = [Trial("random", n, n < 2, 40.0 + n if n < 2 else 120.0, 3 + n, 10.0, "cup" if n < 2 else "") for n in range(4)]
+RANDOM = [
+    Trial("random", n, n < 2, 40.0 + n if n < 2 else 120.0, 3 + n, 10.0, "cup" if n < 2 else "")
+    for n in range(4)
+]
 NEVER = [Trial("never", n, False, 120.0, 9, 30.0, "") for n in range(4)]
 COMPARISON = Comparison(MADE, ("random", "never"), 4, (*RANDOM, *NEVER))
 
 
 def test_json_has_the_promised_fields():
     data = json.loads(json.dumps(comparison_json(COMPARISON)))
-    assert {key: data[key] for key in ("scenario", "seed", "trials")} == {"scenario": "kitchen", "seed": 7, "trials": 4}
+    assert {key: data[key] for key in ("scenario", "seed", "trials")} == {
+        "scenario": "kitchen",
+        "seed": 7,
+        "trials": 4,
+    }
     arm = data["arms"]["random"]
     wilson, boot = wilson_interval(2, 4), bootstrap_interval([40.0, 41.0, 120.0, 120.0], 7)
     assert arm["found"] == 0.5
@@ -48,5 +55,14 @@ def test_the_table_shows_units_and_intervals():
     console = Console(width=120, record=True, file=io.StringIO())
     console.print(comparison_table(COMPARISON))
     text = console.export_text()
-    for part in ("random", "50.0% [15.0, 85.0]", "40.5", "travel [m]", "censored time [s]", "seed 7", "narrow", "steady"):
+    for part in (
+        "random",
+        "50.0% [15.0, 85.0]",
+        "40.5",
+        "travel [m]",
+        "censored time [s]",
+        "seed 7",
+        "narrow",
+        "steady",
+    ):
         assert part in text

@@ -30,7 +30,11 @@ def one_line(error):
 
 def test_a_scenario_is_read_whole(cell):
     scenario = load_scenario(cell)
-    assert (scenario.name, scenario.target, tuple(scenario.arms)) == ("cell", "Cup", ("random", "planes", "qsr"))
+    assert (scenario.name, scenario.target, tuple(scenario.arms)) == (
+        "cell",
+        "Cup",
+        ("random", "planes", "qsr"),
+    )
     assert scenario.variant(None) == "both"
     assert [placed.name for placed in scenario.placed("one")] == ["cup-2"]
     assert scenario.robot.speed == 0.3
@@ -87,7 +91,10 @@ def test_the_preset_of_the_paper_holds_its_numbers():
     assert preset.cone() == Triangle(3.0, 1.0)
     assert (preset.candidates, preset.weight_floor, preset.weight_gain) == (20, 1.0, 10.0)
     assert (preset.limits.seconds, preset.limits.poses) == (120.0, 20)
-    assert (preset.supports.method, math.radians(preset.supports.max_tilt_deg)) == ("mean-normal", math.pi / 8)
+    assert (preset.supports.method, math.radians(preset.supports.max_tilt_deg)) == (
+        "mean-normal",
+        math.pi / 8,
+    )
 
 
 BAD_TEXT = [
@@ -139,7 +146,7 @@ def test_missing_files_are_named(cell, change):
     with pytest.raises(UnknownNameError, match="unknown scenario 'kitchn'; did you mean 'kitchen'"):
         load_scenario("kitchn")
     change(cell, 'camera = "wide"', 'camera = "wyde"')
-    with pytest.raises(UnknownNameError, match=r"did you mean 'wide'\? known: narrow, wide"):
+    with pytest.raises(UnknownNameError, match=r"did you mean 'wide'\? known: morse2014, narrow, wide"):
         load_scenario(cell)
     change(cell, 'camera = "wyde"', 'camera = "mine.toml"')
     with pytest.raises(FileError, match=r"mine\.toml: no such file"):
@@ -202,9 +209,18 @@ def test_a_target_that_no_chain_reaches(cell):
     assert run_search(cell, target="Spoon", planner="random").found is False
 
 
+def test_a_target_that_the_knowledge_does_not_know(cell):
+    with pytest.raises(UnknownNameError, match=r"unknown class of .*cups\.qsr: 'Cupp'; did you mean 'Cup'"):
+        run_search(cell, target="Cupp")
+
+
 @pytest.mark.parametrize(
     ("name", "content", "problem"),
-    [("cups.qsr", "landmark.", "cups"), ("cups.qsr", "static Box.", "Cup"), ("room.toml", "name = 1", "room")],
+    [
+        ("cups.qsr", "landmark.", "cups"),
+        ("cups.qsr", "static Box.", "Cup"),
+        ("room.toml", "name = 1", "room"),
+    ],
 )
 def test_damaged_knowledge_and_rooms_are_errors_of_ours(cell, name, content, problem):
     cell.with_name(name).write_text(content)

@@ -68,7 +68,20 @@ def test_compare_prints_a_table_and_writes_every_trial(cell, tmp_path, monkeypat
 
 def test_compare_as_json_is_nothing_but_json(cell, tmp_path):
     output = tmp_path / "t.csv"
-    result = run("compare", cell, "--arms", "qsr", "--trials", 2, "--output", output, "--processes", 1, "--format", "json")
+    result = run(
+        "compare",
+        cell,
+        "--arms",
+        "qsr",
+        "--trials",
+        2,
+        "--output",
+        output,
+        "--processes",
+        1,
+        "--format",
+        "json",
+    )
     data = json.loads(result.stdout)
     assert (data["trials"], list(data["arms"]), data["camera"]) == (2, ["qsr"], "wide")
 

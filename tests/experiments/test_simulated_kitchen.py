@@ -1,3 +1,5 @@
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -23,7 +25,10 @@ def test_the_authors_file_yields_their_three_gaussians():
     answer = load("tum-kitchen/authors").where("Cup")
     assert (answer.frame, answer.elsewhere) == ("map", 0.0)
     np.testing.assert_allclose(answer.weights, 1 / 3, rtol=1e-12)
-    found = {tuple(np.round(mean, 9).tolist()): cov for mean, cov in zip(answer.means, answer.covariances, strict=True)}
+    found = {
+        tuple(np.round(mean, 9).tolist()): cov
+        for mean, cov in zip(answer.means, answer.covariances, strict=True)
+    }
     assert set(found) == set(AUTHORS)
     for mean, variances in AUTHORS.items():
         np.testing.assert_allclose(found[mean], np.diag(variances), atol=1e-12)
@@ -53,7 +58,7 @@ def test_a_robot_is_never_stopped_by_what_its_map_does_not_show():
     opening = open_search("tum-kitchen", planner="planes", variant="C")
     for trial in range(3):
         steps = opening.search(seed=5, trial=trial).steps
-        for before, after in zip(steps, steps[1:], strict=False):
+        for before, after in pairwise(steps):
             assert np.hypot(*(after.origin.position - before.pose.position)) < 1e-9
 
 

@@ -1,4 +1,5 @@
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -93,7 +94,7 @@ def test_the_clock_adds_up_drives_turns_and_looks(navigation):
 
 def test_each_step_starts_where_the_last_one_ended(navigation):
     result = run(navigation, PaperWorld(things=()), limits=Limits(120.0, 6, 20))
-    for before, after in zip(result.steps, result.steps[1:], strict=False):
+    for before, after in pairwise(result.steps):
         assert after.origin == before.pose
         np.testing.assert_allclose(after.path[0], before.path[-1])
 
