@@ -69,10 +69,12 @@ def tell_comparisons(scenario: str, cameras: Sequence[str | None], trials: int, 
             result = qsr.compare(loaded, arms, trials, SEED, variant, processes=os.cpu_count() or 1)
             mark = "-".join(filter(None, (scenario, camera, variant)))
             option = f" --camera {camera}" if camera else ""
-            command = f"qsr compare {scenario} --arms {','.join(arms)} --trials {trials} --seed {SEED} --variant {variant}"
-            replace_table(mark, f"`{command}{option}`\n\n{markdown(result)}")
+            command = f"qsr compare {scenario} --arms {','.join(arms)} --trials {trials} --seed {SEED}"
+            replace_table(mark, f"`{command} --variant {variant}{option}`\n\n{markdown(result)}")
             times = {arm: [t.seconds if t.found else math.inf for t in result.of(arm)] for arm in arms}
-            qsr.save_figure(qsr.draw_found_by_time(times, loaded.limits.seconds), IMAGES / f"found-{mark}.png")
+            qsr.save_figure(
+                qsr.draw_found_by_time(times, loaded.limits.seconds), IMAGES / f"found-{mark}.png"
+            )
 
 
 def markdown(result: qsr.Comparison) -> str:
@@ -99,6 +101,7 @@ def replace_table(mark: str, text: str) -> None:
 
 
 def main() -> None:
+    """Make what the command line asks for."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--trials", type=int, default=200)
     parser.add_argument("--only", choices=("pictures", "tables"))

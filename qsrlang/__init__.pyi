@@ -1,33 +1,149 @@
-from .errors import FileError, MissingFacingError, NoRoomError, QSRError, UnknownNameError, UnreachedTargetError
+from .errors import (
+    BlockedPoseError,
+    FileError,
+    MissingFacingError,
+    NoNavigablePoseError,
+    NoRoomError,
+    OutsideMapError,
+    QSRError,
+    TooManyWorldsError,
+    UnknownNameError,
+    UnreachedTargetError,
+    ValueRangeError,
+)
+from .experiments.comparing import compare
+from .experiments.pictures import draw_story
+from .experiments.recording import Experiment
+from .experiments.scenarios import Scenario, load_scenario
+from .experiments.statistics import Interval
+from .experiments.stories import Opening, SearchStory, open_search, search
+from .experiments.summaries import ArmSummary, Comparison
+from .experiments.trials import Trial
 from .geometry.pose import Pose2
+from .geometry.viewcone import Sector, Triangle, ViewCone
 from .language.diagnostics import Diagnostic, LanguageError
 from .language.parser import parse, parse_landmark, parse_place, parse_query
+from .maps.mapping import VoxelMapper
+from .maps.navigation import NavigationGrid, occupancy_from_voxels
+from .maps.occupancy import Cell, OccupancyGrid
+from .maps.octomap import OctoMap, read_octomap
+from .maps.paths import DistanceField, shortest_path
+from .maps.rosmap import read_ros_map
+from .maps.supports import Supports, find_supports
+from .maps.voxels import VoxelGrid
 from .mixtures.answers import Component, Where
 from .mixtures.gaussian import GaussianMixture
 from .mixtures.queries import KnowledgeBase, load, parse_knowledge
+from .planning.belief import voxel_weights
+from .planning.loop import search_world
+from .planning.outcome import Limits, SearchResult, SearchStep
+from .planning.planners import PlanesPlanner, Planner, QSRPlanner, RandomPlanner
+from .planning.seeding import TrialSeeds
+from .planning.sensing import Camera, Robot
+from .planning.visibility import in_view, view_values
+from .planning.world import Detection, Drive, Look, World
 from .plotting.answers import draw_answer
 from .plotting.canvas import save_figure
+from .plotting.maps import draw_map
+from .plotting.mixtures import draw_mixture
+from .plotting.statistics import draw_found_by_time
+from .plotting.steps import draw_search_step
+from .plotting.voxels import draw_voxels
+from .relations.graph import Landmark, RelationGraph
+from .resources import data_root
+from .simulation.objects import Placement
+from .simulation.picture import scene_picture
+from .simulation.roomfiles import load_room
+from .simulation.rooms import Room
+from .simulation.survey import survey_room
+from .simulation.world import PybulletWorld
 
 __all__ = [
+    "ArmSummary",
+    "BlockedPoseError",
+    "Camera",
+    "Cell",
+    "Comparison",
     "Component",
+    "Detection",
     "Diagnostic",
+    "DistanceField",
+    "Drive",
+    "Experiment",
     "FileError",
     "GaussianMixture",
+    "Interval",
     "KnowledgeBase",
+    "Landmark",
     "LanguageError",
+    "Limits",
+    "Look",
     "MissingFacingError",
+    "NavigationGrid",
+    "NoNavigablePoseError",
     "NoRoomError",
+    "OccupancyGrid",
+    "OctoMap",
+    "Opening",
+    "OutsideMapError",
+    "Placement",
+    "PlanesPlanner",
+    "Planner",
     "Pose2",
+    "PybulletWorld",
     "QSRError",
+    "QSRPlanner",
+    "RandomPlanner",
+    "RelationGraph",
+    "Robot",
+    "Room",
+    "Scenario",
+    "SearchResult",
+    "SearchStep",
+    "SearchStory",
+    "Sector",
+    "Supports",
+    "TooManyWorldsError",
+    "Trial",
+    "TrialSeeds",
+    "Triangle",
     "UnknownNameError",
     "UnreachedTargetError",
+    "ValueRangeError",
+    "ViewCone",
+    "VoxelGrid",
+    "VoxelMapper",
     "Where",
+    "World",
+    "compare",
+    "data_root",
     "draw_answer",
+    "draw_found_by_time",
+    "draw_map",
+    "draw_mixture",
+    "draw_search_step",
+    "draw_story",
+    "draw_voxels",
+    "find_supports",
+    "in_view",
     "load",
+    "load_room",
+    "load_scenario",
+    "occupancy_from_voxels",
+    "open_search",
     "parse",
     "parse_knowledge",
     "parse_landmark",
     "parse_place",
     "parse_query",
+    "read_octomap",
+    "read_ros_map",
     "save_figure",
+    "scene_picture",
+    "search",
+    "search_world",
+    "shortest_path",
+    "survey_room",
+    "view_values",
+    "voxel_weights",
 ]

@@ -16,7 +16,7 @@ LAYERS = [
     {"language", "geometry"},
     {"relations", "maps"},
     {"mixtures"},
-    {"search"},
+    {"planning"},
     {"simulation", "learning", "plotting", "editor"},
     {"experiments"},
     {"cli"},

@@ -21,7 +21,15 @@ def test_what_the_page_names_exists(name):
 
 
 def test_the_page_covers_every_numbered_item():
-    for item in ("Equation 1", "Equation 2", "Equation 3", "Algorithm 1", "Table I:", "Table II:", "Table III:"):
+    for item in (
+        "Equation 1",
+        "Equation 2",
+        "Equation 3",
+        "Algorithm 1",
+        "Table I:",
+        "Table II:",
+        "Table III:",
+    ):
         assert item in PAGE
     for number in range(2, 9):
         assert re.search(rf"Figs?\. (\d and )?{number}", PAGE), number

@@ -27,7 +27,7 @@ def main() -> None:
 
 
 def build_app(words: list[str]) -> typer.Typer:
-    """Return the command with the verb that the words name, or with all: a verb's own imports cost the others nothing."""
+    """Return the command with the verb that the words name, or with all; the imports of the others are spared."""
     app = typer.Typer(
         name="qsr",
         callback=_describe,

@@ -11,11 +11,11 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from qsrlang.cli.answers import print_answer
 from qsrlang.experiments.stories import Opening, SearchStory
 from qsrlang.geometry.pose import Pose2
-from qsrlang.mixtures.answers import Where
-from qsrlang.search.outcome import SearchStep
-from qsrlang.search.world import Detection
+from qsrlang.planning.outcome import SearchStep
+from qsrlang.planning.world import Detection
 
 
 def narrate_opening(console: Console, opening: Opening, seed: int) -> None:
@@ -37,23 +37,8 @@ def narrate_opening(console: Console, opening: Opening, seed: int) -> None:
     if briefing.belief is None:
         console.print("It uses no relations.", highlight=False)
     else:
-        _print_belief(console, briefing.belief)
-
-
-def _print_belief(console: Console, belief: Where) -> None:
-    table = Table(title=f"It believes: where {belief.target} is", title_justify="left")
-    for heading in ("share", "x [m]", "y [m]", "sd [m]"):
-        table.add_column(escape(heading), justify="right", no_wrap=True)
-    table.add_column("because of", overflow="fold")
-    for component in belief.components:
-        (x, y), (major, minor, _) = component.mean, component.ellipse
-        reasons = escape("\n".join(component.statements))
-        table.add_row(
-            f"{component.weight:.3f}", f"{x:.2f}", f"{y:.2f}", f"{major:.2f} × {minor:.2f}", reasons
-        )
-    console.print(table)
-    if belief.elsewhere > 0.0:
-        console.print(f"Elsewhere: {belief.elsewhere:.3f}.", highlight=False)
+        title = f"It believes: where {briefing.target} is"
+        print_answer(briefing.belief, console, title)
 
 
 def narrate_step(console: Console, opening: Opening, step: SearchStep, picture: Path | None) -> None:

@@ -12,11 +12,11 @@ from rich.console import Console
 from qsrlang.cli.narration import narrate_end, narrate_opening, narrate_step, story_json
 from qsrlang.cli.options import Format, OutputFormat
 from qsrlang.errors import FileError
+from qsrlang.experiments.pictures import draw_steps
 from qsrlang.experiments.scenarios import load_scenario
 from qsrlang.experiments.stories import Opening, open_search
+from qsrlang.planning.outcome import SearchStep
 from qsrlang.plotting.canvas import save_figure
-from qsrlang.plotting.steps import draw_search_step
-from qsrlang.search.outcome import SearchStep
 
 RUNS = Path("runs")
 
@@ -73,15 +73,4 @@ def _folder(path: Path) -> Path:
 
 
 def _picture(opening: Opening, steps: list[SearchStep], folder: Path) -> Path:
-    briefing = opening.briefing
-    figure = draw_search_step(
-        opening.place.occupancy,
-        steps,
-        cone=briefing.cone,
-        target=briefing.target,
-        supports=briefing.supports,
-        weights=briefing.weights,
-        mixture=briefing.belief.mixture if briefing.belief is not None else None,
-        landmarks=briefing.landmarks,
-    )
-    return save_figure(figure, folder / f"step-{len(steps):02d}.png")
+    return save_figure(draw_steps(opening, steps), folder / f"step-{len(steps):02d}.png")

@@ -9,10 +9,10 @@ from qsrlang.experiments.places import Place, build_world
 from qsrlang.experiments.scenarios import Scenario
 from qsrlang.experiments.trials import Trial, trial_of
 from qsrlang.maps.navigation import NavigationGrid
-from qsrlang.search.loop import Watcher, search
-from qsrlang.search.outcome import SearchResult
-from qsrlang.search.seeding import TrialSeeds
-from qsrlang.search.world import World
+from qsrlang.planning.loop import Watcher, search_world
+from qsrlang.planning.outcome import SearchResult
+from qsrlang.planning.seeding import TrialSeeds
+from qsrlang.planning.world import World
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,4 +63,4 @@ def run_trial(
     watch: Watcher | None = None,
 ) -> SearchResult:
     """Return what a robot with this briefing does in the world, from where it stands."""
-    return search(world, briefing.planner, reachable, briefing.target, briefing.limits, seeds, watch)
+    return search_world(world, briefing.planner, reachable, briefing.target, briefing.limits, seeds, watch)

@@ -17,10 +17,10 @@ from qsrlang.geometry.viewcone import ViewCone
 from qsrlang.maps.supports import Supports, find_supports
 from qsrlang.mixtures.answers import Where
 from qsrlang.mixtures.queries import KnowledgeBase, load
+from qsrlang.planning.belief import voxel_weights
+from qsrlang.planning.outcome import Limits
+from qsrlang.planning.planners import Planner, make_planner
 from qsrlang.relations.graph import Landmark
-from qsrlang.search.belief import voxel_weights
-from qsrlang.search.outcome import Limits
-from qsrlang.search.planners import Planner, make_planner
 
 QSR = "qsr"
 

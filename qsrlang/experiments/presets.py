@@ -13,9 +13,9 @@ from pydantic import Field
 from qsrlang.errors import FileError, UnknownNameError, ValueRangeError
 from qsrlang.experiments.tomlfiles import Entry, EntryT, read_entry
 from qsrlang.geometry.viewcone import Sector, Triangle, ViewCone
+from qsrlang.planning.outcome import Limits
+from qsrlang.planning.sensing import Camera, Robot
 from qsrlang.resources import resource_root
-from qsrlang.search.outcome import Limits
-from qsrlang.search.sensing import Camera, Robot
 
 Positive = Annotated[float, Field(gt=0.0)]
 Count = Annotated[int, Field(ge=1, le=1_000_000)]

@@ -22,10 +22,10 @@ from qsrlang.experiments.presets import (
 from qsrlang.experiments.scenariofiles import ArmEntry, PlacementEntry, ScenarioEntry
 from qsrlang.experiments.tomlfiles import read_entry
 from qsrlang.geometry.pose import Pose2
+from qsrlang.planning.outcome import Limits
+from qsrlang.planning.planners import PlannerName
+from qsrlang.planning.sensing import Camera, Robot
 from qsrlang.resources import data_root, resource_root
-from qsrlang.search.outcome import Limits
-from qsrlang.search.planners import PlannerName
-from qsrlang.search.sensing import Camera, Robot
 
 EVERYTHING = "all"
 

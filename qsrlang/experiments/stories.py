@@ -9,10 +9,10 @@ from qsrlang.experiments.arms import run_trial
 from qsrlang.experiments.briefings import Briefing, brief
 from qsrlang.experiments.places import Place, build_world, read_place
 from qsrlang.experiments.scenarios import Scenario, load_scenario
-from qsrlang.search.loop import Watcher
-from qsrlang.search.outcome import SearchResult, SearchStep
-from qsrlang.search.seeding import TrialSeeds
-from qsrlang.search.world import Detection
+from qsrlang.planning.loop import Watcher
+from qsrlang.planning.outcome import SearchResult, SearchStep
+from qsrlang.planning.seeding import TrialSeeds
+from qsrlang.planning.world import Detection
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -92,7 +92,7 @@ def open_search(
     return Opening(loaded, chosen, place, briefing)
 
 
-def run_search(
+def search(
     scenario: str | Path | Scenario,
     target: str | None = None,
     planner: str = "qsr",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from qsrlang.search.outcome import SearchResult
+from qsrlang.planning.outcome import SearchResult
 
 DECIMALS = 6
 

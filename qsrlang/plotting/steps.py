@@ -15,13 +15,13 @@ from qsrlang.geometry.viewcone import ViewCone
 from qsrlang.maps.occupancy import OccupancyGrid
 from qsrlang.maps.supports import Supports
 from qsrlang.mixtures.gaussian import GaussianMixture
+from qsrlang.planning.outcome import SearchStep
 from qsrlang.plotting import layers, style
 from qsrlang.plotting.canvas import bar_box, plane_figure
 from qsrlang.plotting.labels import Labels
 from qsrlang.plotting.maps import WEIGHT_LABEL, add_weighted_voxels, is_graded, known_ground, voxel_shares
 from qsrlang.plotting.views import MAX_VIEWS, Views, add_views, value_text, write_value
 from qsrlang.relations.graph import Landmark
-from qsrlang.search.outcome import SearchStep
 
 VALUE_LABEL = "value of\nthe view"
 

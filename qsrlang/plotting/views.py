@@ -12,10 +12,10 @@ from matplotlib.patches import Polygon
 
 from qsrlang.arrays import FloatArray, IntArray
 from qsrlang.geometry.viewcone import ViewCone
+from qsrlang.planning.outcome import SearchStep
 from qsrlang.plotting import layers, style
 from qsrlang.plotting.labels import Labels
 from qsrlang.plotting.outlines import blind_edges, cone_outlines
-from qsrlang.search.outcome import SearchStep
 
 MAX_VIEWS = 40
 """Of more candidates than this only the most valuable are drawn, and the caption says so."""

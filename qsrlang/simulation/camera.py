@@ -9,8 +9,8 @@ import numpy as np
 
 from qsrlang.arrays import BoolArray, FloatArray, IntArray, frozen_array
 from qsrlang.geometry.pose import Pose2
-from qsrlang.search.sensing import Camera
-from qsrlang.search.world import Detection
+from qsrlang.planning.sensing import Camera
+from qsrlang.planning.world import Detection
 from qsrlang.simulation.engine import NOTHING, Engine
 from qsrlang.simulation.rooms import Thing
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from qsrlang.arrays import BoolArray, FloatArray, IntArray
 from qsrlang.geometry.pose import Pose2
-from qsrlang.search.sensing import Camera
+from qsrlang.planning.sensing import Camera
 from qsrlang.simulation.camera import axes_of, eyes_of
 from qsrlang.simulation.engine import Engine, Lens
 

@@ -7,7 +7,7 @@ import numpy as np
 from qsrlang.arrays import FloatArray
 from qsrlang.geometry.angles import wrap
 from qsrlang.geometry.pose import Pose2
-from qsrlang.search.sensing import Camera, Robot
+from qsrlang.planning.sensing import Camera, Robot
 from qsrlang.simulation.engine import Engine
 from qsrlang.simulation.rooms import Part, Shape, centroid_of
 

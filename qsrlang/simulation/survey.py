@@ -10,7 +10,7 @@ from qsrlang.maps.mapping import VoxelMapper
 from qsrlang.maps.navigation import occupancy_from_voxels
 from qsrlang.maps.occupancy import OccupancyGrid
 from qsrlang.maps.voxels import VoxelGrid
-from qsrlang.search.sensing import Camera, Robot
+from qsrlang.planning.sensing import Camera, Robot
 from qsrlang.simulation.depth import depth_image
 from qsrlang.simulation.robot import RobotBody
 from qsrlang.simulation.rooms import Room

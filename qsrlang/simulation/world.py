@@ -13,8 +13,8 @@ from qsrlang.errors import BlockedPoseError, NoNavigablePoseError, OutsideMapErr
 from qsrlang.geometry.angles import unit
 from qsrlang.geometry.pose import Pose2
 from qsrlang.maps.voxels import VoxelGrid
-from qsrlang.search.sensing import Camera, Robot
-from qsrlang.search.world import Detection, Drive, Look
+from qsrlang.planning.sensing import Camera, Robot
+from qsrlang.planning.world import Detection, Drive, Look
 from qsrlang.simulation.camera import SemanticCamera, targets_of
 from qsrlang.simulation.depth import DepthImage, depth_image
 from qsrlang.simulation.objects import Placement
@@ -27,7 +27,7 @@ PROBES_PER_RING = 24
 
 
 class PybulletWorld:
-    """A robot in a simulated place; implements `qsrlang.search.world.World`. Poses are in the map frame.
+    """A robot in a simulated place; implements `qsrlang.planning.world.World`. Poses are in the map frame.
 
     It lives until `close`, or use it in `with`. `reset` puts the robot back: one world serves many trials.
     Nothing in it is random: the same scene gives the same poses to the bit, beside other worlds or not.

@@ -13,7 +13,7 @@ import qsrlang
 from qsrlang.errors import FileError, ValueRangeError
 from qsrlang.experiments.comparing import compare
 from qsrlang.experiments.scenarios import load_scenario
-from qsrlang.experiments.stories import open_search, run_search
+from qsrlang.experiments.stories import open_search, search
 
 TRIALS = 5
 
@@ -87,7 +87,7 @@ def test_arms_share_their_candidates_and_trials_are_searches(cell):
                 story.poses,
                 pytest.approx(story.seconds if story.found else 120.0, abs=1e-6),
             )
-    first = [run_search(cell, planner=arm, seed=8).steps[0].candidates.tolist() for arm in ("random", "qsr")]
+    first = [search(cell, planner=arm, seed=8).steps[0].candidates.tolist() for arm in ("random", "qsr")]
     assert first[0] == first[1]
 
 
@@ -98,7 +98,7 @@ def test_arms_find_less_where_less_is_there(cell):
 
 
 def test_a_story_holds_all_that_a_picture_needs(cell):
-    story = run_search(cell, seed=1)
+    story = search(cell, seed=1)
     briefing = story.opening.briefing
     assert len(briefing.weights) == len(briefing.supports.centres)
     assert briefing.belief is not None

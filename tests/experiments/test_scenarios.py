@@ -16,7 +16,7 @@ from qsrlang.experiments.comparing import compare
 from qsrlang.experiments.presets import find_preset, read_camera, read_planner, read_robot
 from qsrlang.experiments.scenariofiles import ScenarioEntry
 from qsrlang.experiments.scenarios import load_scenario, scenario_names
-from qsrlang.experiments.stories import open_search, run_search
+from qsrlang.experiments.stories import open_search, search
 from qsrlang.experiments.tomlfiles import read_entry
 from qsrlang.geometry.viewcone import Triangle
 from qsrlang.resources import data_root, resource_path, resource_root
@@ -178,7 +178,7 @@ def test_an_unknown_arm_or_variant_names_the_file_and_the_known_ones(cell):
 def test_a_start_inside_a_table(cell, change):
     change(cell, "x = 1.0\ny = 1.0", "x = 3.6\ny = 1.8")
     with pytest.raises(BlockedPoseError) as error:
-        run_search(cell)
+        search(cell)
     assert "the robot's start at (3.60 m, 1.80 m)" in one_line(error)
     assert "nearest free place" in one_line(error)
 
@@ -186,32 +186,32 @@ def test_a_start_inside_a_table(cell, change):
 def test_a_start_outside_the_map(cell, change):
     change(cell, "x = 1.0", "x = 50.0")
     with pytest.raises(OutsideMapError, match="the robot's start"):
-        run_search(cell)
+        search(cell)
 
 
 def test_no_navigable_pose(cell, change):
     change(cell.with_name("slow.toml"), "clearance = 0.35", "clearance = 2.0")
     with pytest.raises(NoNavigablePoseError, match="lower the inflation radius"):
-        run_search(cell)
+        search(cell)
 
 
 def test_a_landmark_outside_the_map(cell, change):
     change(cell, "[map]", 'landmarks = ["table-9 : Table at (30 m, 1 m) facing 0 deg"]\n[map]')
     with pytest.raises(OutsideMapError) as error:
-        run_search(cell)
+        search(cell)
     assert "landmark 'table-9' at (30.00 m, 1.00 m) lies outside the map" in one_line(error)
 
 
 def test_a_target_that_no_chain_reaches(cell):
     with pytest.raises(UnreachedTargetError) as error:
-        run_search(cell, target="Spoon")
+        search(cell, target="Spoon")
     assert "cups.qsr" in one_line(error) and "'Spoon'" in one_line(error)
-    assert run_search(cell, target="Spoon", planner="random").found is False
+    assert search(cell, target="Spoon", planner="random").found is False
 
 
 def test_a_target_that_the_knowledge_does_not_know(cell):
     with pytest.raises(UnknownNameError, match=r"unknown class of .*cups\.qsr: 'Cupp'; did you mean 'Cup'"):
-        run_search(cell, target="Cupp")
+        search(cell, target="Cupp")
 
 
 @pytest.mark.parametrize(
@@ -225,13 +225,13 @@ def test_a_target_that_the_knowledge_does_not_know(cell):
 def test_damaged_knowledge_and_rooms_are_errors_of_ours(cell, name, content, problem):
     cell.with_name(name).write_text(content)
     with pytest.raises(QSRError, match=problem):
-        run_search(cell)
+        search(cell)
 
 
 def test_a_cup_in_the_air_names_the_scenario(cell, change):
     change(cell, "x = 3.5\ny = 2.1", "x = 3.27\ny = 2.1")
     with pytest.raises(FileError) as error:
-        run_search(cell)
+        search(cell)
     assert one_line(error).startswith(f"{cell}: ")
     assert "cup-1" in one_line(error)
 

@@ -106,9 +106,7 @@ def test_any_text_gives_diagnostics_and_no_other_exception(text):
         assert finding.render()
 
 
-@given(
-    st.lists(st.sampled_from([*" .,:()|{}~∧¬⇔×\n", "believe ", "left-of", "Cup", "3 cm", "scene", "#"]))
-)
+@given(st.lists(st.sampled_from([*" .,:()|{}~∧¬⇔×\n", "believe ", "left-of", "Cup", "3 cm", "scene", "#"])))
 def test_any_row_of_words_gives_diagnostics_and_no_other_exception(words):
     for finding in qsr.parse("".join(words)).diagnostics:
         assert finding.render()

@@ -11,13 +11,13 @@ from qsrlang.geometry.viewcone import Sector, Triangle
 from qsrlang.maps.occupancy import Cell, OccupancyGrid
 from qsrlang.maps.supports import Supports
 from qsrlang.mixtures.gaussian import GaussianMixture
+from qsrlang.planning.outcome import SearchStep
+from qsrlang.planning.world import Detection
 from qsrlang.plotting import style
 from qsrlang.plotting.outlines import cone_outline, cone_outlines
 from qsrlang.plotting.steps import draw_search_step
 from qsrlang.plotting.views import MAX_VIEWS
 from qsrlang.relations.graph import Landmark
-from qsrlang.search.outcome import SearchStep
-from qsrlang.search.world import Detection
 
 CONE = Triangle(3.0, 1.0)
 GRID = OccupancyGrid(np.full((80, 60), Cell.FREE, dtype=np.uint8), 0.1, Pose2(-3.0, -4.0), "a test")

@@ -1,7 +1,7 @@
 import numpy as np
 
 from qsrlang.geometry.pose import Pose2
-from qsrlang.search.sensing import Camera, Robot
+from qsrlang.planning.sensing import Camera, Robot
 from qsrlang.simulation.objects import Placement
 from qsrlang.simulation.rooms import Part, Room, Shape, Thing
 

@@ -11,7 +11,7 @@ from simulation_scenes import CAMERA, CUPS, ROBOT, table_room
 from qsrlang.errors import BlockedPoseError, OutsideMapError, ValueRangeError
 from qsrlang.geometry.pose import Pose2
 from qsrlang.maps.voxels import VoxelGrid
-from qsrlang.search.world import World
+from qsrlang.planning.world import World
 from qsrlang.simulation.objects import Placement
 from qsrlang.simulation.world import PybulletWorld
 

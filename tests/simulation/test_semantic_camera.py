@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from simulation_scenes import CAMERA, ROBOT, box, table_room
 
 from qsrlang.geometry.pose import Pose2
-from qsrlang.search.sensing import Camera
+from qsrlang.planning.sensing import Camera
 from qsrlang.simulation.camera import axes_of, boxes_in_frustum, eyes_of
 from qsrlang.simulation.depth import depth_image
 from qsrlang.simulation.objects import Placement

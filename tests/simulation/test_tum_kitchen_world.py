@@ -3,8 +3,8 @@ import pytest
 
 from qsrlang.geometry.pose import Pose2
 from qsrlang.maps.octomap import read_octomap
+from qsrlang.planning.sensing import Camera, Robot
 from qsrlang.resources import data_root
-from qsrlang.search.sensing import Camera, Robot
 from qsrlang.simulation.mesh import clear_boxes, mesh_of
 from qsrlang.simulation.objects import Placement
 from qsrlang.simulation.world import PybulletWorld

@@ -3,7 +3,7 @@ import itertools
 import pytest
 
 from qsrlang.errors import ValueRangeError
-from qsrlang.search.seeding import TrialSeeds
+from qsrlang.planning.seeding import TrialSeeds
 
 
 def test_every_stream_is_its_own():

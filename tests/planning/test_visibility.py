@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from qsrlang.errors import ValueRangeError
 from qsrlang.geometry.pose import Pose2
 from qsrlang.geometry.viewcone import Sector, Triangle, ViewCone
-from qsrlang.search import visibility
-from qsrlang.search.visibility import in_view, view_values
+from qsrlang.planning import visibility
+from qsrlang.planning.visibility import in_view, view_values
 
 CASES = 1_000
 

@@ -11,7 +11,7 @@ from qsrlang.arrays import FloatArray, frozen_array
 from qsrlang.errors import ValueRangeError
 from qsrlang.geometry.pose import Pose2
 from qsrlang.geometry.viewcone import ViewCone
-from qsrlang.search.visibility import view_values
+from qsrlang.planning.visibility import view_values
 
 PlannerName = Literal["random", "planes", "qsr"]
 

@@ -4,7 +4,7 @@ import pytest
 from qsrlang.errors import ValueRangeError
 from qsrlang.geometry.pose import Pose2
 from qsrlang.geometry.viewcone import Triangle
-from qsrlang.search.planners import Choice, PlanesPlanner, QSRPlanner, RandomPlanner
+from qsrlang.planning.planners import Choice, PlanesPlanner, QSRPlanner, RandomPlanner
 
 HERE = Pose2(0, 0)
 CONE = Triangle(3, 1)

@@ -9,15 +9,15 @@ from qsrlang.arrays import FloatArray
 from qsrlang.geometry.pose import Pose2
 from qsrlang.maps.navigation import NavigationGrid
 from qsrlang.maps.paths import DistanceField
-from qsrlang.search.outcome import Limits, SearchResult, SearchStep
-from qsrlang.search.planners import Planner
-from qsrlang.search.seeding import TrialSeeds
-from qsrlang.search.world import Detection, World
+from qsrlang.planning.outcome import Limits, SearchResult, SearchStep
+from qsrlang.planning.planners import Planner
+from qsrlang.planning.seeding import TrialSeeds
+from qsrlang.planning.world import Detection, World
 
 Watcher = Callable[[SearchStep], None]
 
 
-def search(
+def search_world(
     world: World,
     planner: Planner,
     navigation: NavigationGrid,

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from qsrlang.errors import ValueRangeError
 from qsrlang.mixtures.gaussian import GaussianMixture
-from qsrlang.search.belief import voxel_weights
+from qsrlang.planning.belief import voxel_weights
 
 AUTHORS = GaussianMixture(
     weights=np.full(3, 1 / 3),

@@ -10,7 +10,7 @@ import numpy as np
 from qsrlang.arrays import FloatArray, frozen_array
 from qsrlang.errors import ValueRangeError
 from qsrlang.geometry.pose import Pose2
-from qsrlang.search.world import Detection
+from qsrlang.planning.world import Detection
 
 MAX_COUNT = 1_000_000
 

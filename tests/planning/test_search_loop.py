@@ -10,12 +10,12 @@ from qsrlang.geometry.viewcone import Triangle
 from qsrlang.maps.navigation import NavigationGrid
 from qsrlang.maps.occupancy import Cell, OccupancyGrid
 from qsrlang.maps.paths import path_length, turn_angles
-from qsrlang.search.loop import search
-from qsrlang.search.outcome import Limits, SearchResult
-from qsrlang.search.planners import PlanesPlanner, RandomPlanner
-from qsrlang.search.seeding import TrialSeeds
-from qsrlang.search.visibility import in_view
-from qsrlang.search.world import Detection, Drive, Look
+from qsrlang.planning.loop import search_world
+from qsrlang.planning.outcome import Limits, SearchResult
+from qsrlang.planning.planners import PlanesPlanner, RandomPlanner
+from qsrlang.planning.seeding import TrialSeeds
+from qsrlang.planning.visibility import in_view
+from qsrlang.planning.world import Detection, Drive, Look
 
 CUP = Detection("cup-1", "Cup", (4.0, 4.0, 0.8))
 MUG = Detection("mug-1", "Mug", (0.6, 0.6, 0.8))
@@ -58,7 +58,7 @@ def navigation():
 def run(navigation, world=None, planner=None, limits=None, trial=0, seed=3) -> SearchResult:
     planner = planner or RandomPlanner()
     limits = limits or GENEROUS
-    return search(world or PaperWorld(), planner, navigation, "Cup", limits, TrialSeeds(seed, trial))
+    return search_world(world or PaperWorld(), planner, navigation, "Cup", limits, TrialSeeds(seed, trial))
 
 
 def test_the_search_ends_with_the_first_cup(navigation):
@@ -145,7 +145,7 @@ def test_trials_do_not_depend_on_each_other(navigation):
 
 def test_every_step_is_told_as_it_happens(navigation):
     told = []
-    result = search(
+    result = search_world(
         PaperWorld(), RandomPlanner(), navigation, "Cup", GENEROUS, TrialSeeds(3), watch=told.append
     )
     assert tuple(told) == result.steps
