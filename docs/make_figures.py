@@ -41,7 +41,7 @@ def draw_mixtures() -> None:
 def draw_room() -> None:
     """The built-in room, from above and aslant."""
     room = qsr.load_room("kitchen")
-    picture = qsr.scene_picture(room, (-4.5, -5.0, 9.5), (4.0, 5.6, 0.4), (900, 640))
+    picture = qsr.scene_picture(room, (11.5, -4.5, 13.5), (3.9, 5.6, 0.2), (900, 640))
     imsave(IMAGES / "kitchen-room.png", np.asarray(picture))
 
 

@@ -29,6 +29,8 @@ QSR = "qsr"
 class Briefing:
     """What the robot of an arm knows: the target's class, supports and their weights (K,), landmarks and beliefs.
 
+    `landmarks` leaves out surfaces, whose places the supports show.
+
     `belief` says where the statements place the target, map frame; it is None for arms that use no knowledge.
     """
 
@@ -77,7 +79,8 @@ def _briefing(scenario: Scenario, arm: Arm, place: Place, supports: Supports, ta
     weights, belief, landmarks = np.ones(len(places)), None, tuple[Landmark, ...]()
     if arm.planner == QSR:
         known = known_to(scenario, arm, place)
-        belief, landmarks = _belief(known, arm, target), known.landmarks
+        belief = _belief(known, arm, target)
+        landmarks = tuple(one for one in known.landmarks if not known.graph.classes[one.kind].is_surface)
         claimed = 1.0 - belief.elsewhere
         weights = voxel_weights(belief.mixture, places, preset.weight_floor, preset.weight_gain, claimed)
     return Briefing(
