@@ -20,7 +20,7 @@ import qsrlang as qsr
 DOCS = Path(__file__).parent
 IMAGES = DOCS / "images"
 RESULTS = DOCS / "explanation" / "results.md"
-ARMS = ("random", "planes", "qsr", "relations")
+ARMS = ("random", "planes", "qsr", "belief")
 VARIANTS = ("A", "B", "C")
 CAMERAS = ("narrow", "wide")
 MONITOR = "monitor-1 : Monitor at (0 m, 0 m) facing -90 deg"
@@ -117,9 +117,9 @@ def main() -> None:
             draw_search("tum-kitchen", "planes", 2, "tum-kitchen-planes")
             draw_search("tum-kitchen", "qsr", 2, "tum-kitchen-qsr")
     if chosen.only != "pictures":
-        tell_comparisons("kitchen", [None], chosen.trials, ARMS[:3])
+        tell_comparisons("kitchen", [None], chosen.trials, ARMS)
         if has_data:
-            tell_comparisons("tum-kitchen", CAMERAS, chosen.trials, ARMS)
+            tell_comparisons("tum-kitchen", CAMERAS, chosen.trials, (*ARMS, "relations"))
 
 
 if __name__ == "__main__":

@@ -19,10 +19,11 @@ from qsrlang.mixtures.answers import Where
 from qsrlang.mixtures.queries import KnowledgeBase, load
 from qsrlang.planning.belief import voxel_weights
 from qsrlang.planning.outcome import Limits
-from qsrlang.planning.planners import Planner, make_planner
+from qsrlang.planning.planners import BeliefPlanner, PlanesPlanner, Planner, QSRPlanner, RandomPlanner
+from qsrlang.planning.sight import Sight
 from qsrlang.relations.graph import Landmark
 
-QSR = "qsr"
+KNOWING = ("qsr", "belief")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -77,7 +78,7 @@ def supports_of(scenario: Scenario, preset: PlannerEntry, place: Place) -> Suppo
 def _briefing(scenario: Scenario, arm: Arm, place: Place, supports: Supports, target: str) -> Briefing:
     preset, cone, places = arm.preset, arm.preset.cone(), supports.centres[:, :2]
     weights, belief, landmarks = np.ones(len(places)), None, tuple[Landmark, ...]()
-    if arm.planner == QSR:
+    if arm.planner in KNOWING:
         known = known_to(scenario, arm, place)
         belief = _belief(known, arm, target)
         landmarks = tuple(one for one in known.landmarks if not known.graph.classes[one.kind].is_surface)
@@ -92,8 +93,24 @@ def _briefing(scenario: Scenario, arm: Arm, place: Place, supports: Supports, ta
         landmarks=landmarks,
         cone=cone,
         limits=arm.limits,
-        planner=make_planner(arm.planner, cone, places, weights),
+        planner=_planner(scenario, arm, place, supports, weights),
     )
+
+
+def _planner(scenario: Scenario, arm: Arm, place: Place, supports: Supports, weights: FloatArray) -> Planner:
+    cone, places = arm.preset.cone(), supports.centres[:, :2]
+    match arm.planner:
+        case "random":
+            return RandomPlanner()
+        case "planes":
+            return PlanesPlanner(cone, places)
+        case "qsr":
+            return QSRPlanner(cone, places, weights)
+        case "belief":
+            looks = arm.preset.looks
+            sight = Sight(scenario.camera, scenario.floor_height, place.voxels)
+            aims = supports.centres + np.array([0.0, 0.0, 0.5 * place.voxels.resolution + looks.aim_height])
+            return BeliefPlanner(sight, aims, weights, looks.detection_rate)
 
 
 def known_to(scenario: Scenario, arm: Arm, place: Place) -> KnowledgeBase:

@@ -104,6 +104,14 @@ class SupportsEntry(Entry):
     min_part: Count = 1
 
 
+class SightEntry(Entry):
+    """What the planner `belief` assumes of a look: how often it shows what is visible, and where above a support
+    the target's centre is [m]."""
+
+    detection_rate: Annotated[float, Field(gt=0.0, le=1.0)]
+    aim_height: Annotated[float, Field(ge=0.0)]
+
+
 class LimitsEntry(Entry):
     """When a search gives up: seconds and poses."""
 
@@ -121,6 +129,16 @@ class PlannerEntry(Entry):
     weight_gain: Annotated[float, Field(ge=0.0)]
     supports: SupportsEntry
     limits: LimitsEntry
+    sight: SightEntry | None = None
+
+    @property
+    def looks(self) -> SightEntry:
+        """What the planner `belief` assumes of a look; ValueRangeError where the file does not say."""
+        if self.sight is None:
+            raise ValueRangeError(
+                "the table 'sight' of the preset", "absent", "detection_rate and aim_height"
+            )
+        return self.sight
 
     def cone(self) -> ViewCone:
         """Return the view cone that scores the candidates."""

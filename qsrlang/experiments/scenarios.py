@@ -165,7 +165,12 @@ def _map_file(name: str, beside: Path) -> Path:
 
 
 def _arm(name: str, arm: ArmEntry, entry: ScenarioEntry, beside: Path) -> Arm:
-    preset = read_planner(find_preset("planners", arm.preset or entry.preset, beside))
+    named = find_preset("planners", arm.preset or entry.preset, beside)
+    preset = read_planner(named)
+    if arm.planner == "belief" and preset.sight is None:
+        raise FileError(
+            named.path, "has no table 'sight'", f"arm '{name}' needs one, as in the preset 'aware'"
+        )
     knowledge = arm.knowledge or entry.knowledge
     found = str(beside / knowledge) if knowledge.endswith(".qsr") else knowledge
     return Arm(name, arm.planner, found, preset, preset.search_limits(entry.limits))

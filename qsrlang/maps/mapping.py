@@ -11,6 +11,7 @@ from numba import njit
 from qsrlang.arrays import frozen_array
 from qsrlang.errors import ValueRangeError
 from qsrlang.maps.occupancy import Cell
+from qsrlang.maps.stepping import axis, clip
 from qsrlang.maps.voxels import VoxelGrid
 
 LOG_ODDS_HIT, LOG_ODDS_MISS = 0.85, -0.4
@@ -86,34 +87,16 @@ def _mark(marks, start, ends, reach):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _clip(start, step, size, first, last):  # type: ignore[no-untyped-def]
-    if step == 0.0:
-        return (first, last) if 0.0 <= start < size else (1.0, 0.0)
-    enter, leave = -start / step, (size - start) / step
-    return max(first, min(enter, leave)), min(last, max(enter, leave))
-
-
-@njit(cache=True)
-def _axis(start, step, size, first, last):  # type: ignore[no-untyped-def]
-    cell = min(max(math.floor(start + first * step), 0), size - 1)
-    goal = min(max(math.floor(start + last * step), 0), size - 1)
-    if goal == cell:
-        return cell, 0, math.inf, math.inf
-    border = cell + 1 if step > 0.0 else cell
-    return cell, goal - cell, (border - start) / step, 1.0 / abs(step)
-
-
-@njit(cache=True)
 def _pass(marks, x, y, z, dx, dy, dz, last):  # type: ignore[no-untyped-def]
     nx, ny, nz = marks.shape
-    first, last = _clip(x, dx, nx, 0.0, last)
-    first, last = _clip(y, dy, ny, first, last)
-    first, last = _clip(z, dz, nz, first, last)
+    first, last = clip(x, dx, nx, 0.0, last)
+    first, last = clip(y, dy, ny, first, last)
+    first, last = clip(z, dz, nz, first, last)
     if first > last:
         return
-    i, left_i, next_i, wait_i = _axis(x, dx, nx, first, last)
-    j, left_j, next_j, wait_j = _axis(y, dy, ny, first, last)
-    k, left_k, next_k, wait_k = _axis(z, dz, nz, first, last)
+    i, left_i, next_i, wait_i = axis(x, dx, nx, first, last)
+    j, left_j, next_j, wait_j = axis(y, dy, ny, first, last)
+    k, left_k, next_k, wait_k = axis(z, dz, nz, first, last)
     sign_i, sign_j, sign_k = 1 if left_i > 0 else -1, 1 if left_j > 0 else -1, 1 if left_k > 0 else -1
     left_i, left_j, left_k = abs(left_i), abs(left_j), abs(left_k)
     for _ in range(left_i + left_j + left_k + 1):

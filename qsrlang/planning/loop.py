@@ -33,32 +33,34 @@ def search_world(
     with their turns, and dwells. A drive or look that would end after the time limit counts as not found at the
     limit. `navigation` holds the places the robot can reach; `watch` is called with every step once it is over.
     """
-    task = _Task(planner, navigation, target, limits)
+    task = _Task(navigation, target, limits)
     steps: list[SearchStep] = []
     while len(steps) < task.limits.poses:
-        step = _next_step(world, task, seeds, steps)
+        step = _next_step(world, task, planner, seeds, steps)
         steps.append(step)
         if watch is not None:
             watch(step)
         if not step.looked or _hit(step, task.target):
             break
+        planner = planner.after_miss(world.robot_pose)
     return _outcome(task, steps)
 
 
 @dataclass(frozen=True, slots=True)
 class _Task:
-    planner: Planner
     navigation: NavigationGrid
     target: str
     limits: Limits
 
 
-def _next_step(world: World, task: _Task, seeds: TrialSeeds, steps: list[SearchStep]) -> SearchStep:
+def _next_step(
+    world: World, task: _Task, planner: Planner, seeds: TrialSeeds, steps: list[SearchStep]
+) -> SearchStep:
     number = len(steps)
     clock = steps[-1].clock if steps else 0.0
     origin = world.robot_pose
     candidates = task.navigation.sample_poses(task.limits.candidates, seeds.candidates(number))
-    choice = task.planner.choose(candidates, origin, seeds.pick(number))
+    choice = planner.choose(candidates, origin, seeds.pick(number))
     x, y, yaw = (float(value) for value in candidates[choice.index])
     path = _path(task.navigation, origin, (x, y))
     drive = world.drive(path, yaw)

@@ -10,6 +10,7 @@ import numpy as np
 from qsrlang.arrays import BoolArray, FloatArray, IntArray, frozen_array
 from qsrlang.geometry.pose import Pose2
 from qsrlang.planning.sensing import Camera
+from qsrlang.planning.sight import axes_of, eyes_of
 from qsrlang.planning.world import Detection
 from qsrlang.simulation.engine import NOTHING, Engine
 from qsrlang.simulation.rooms import Thing
@@ -63,21 +64,6 @@ def targets_of(engine: Engine, things: Sequence[tuple[Thing, int]]) -> Targets:
     return Targets(
         names, kinds, np.array([body for _, body in things], dtype=np.int64), corners, centres, aims
     )
-
-
-def eyes_of(poses: FloatArray, camera: Camera, floor: float) -> FloatArray:
-    """Return where the camera is (N, 3) when the robot stands at poses (N, 3) of x, y, yaw."""
-    return np.column_stack([poses[:, :2], np.full(len(poses), floor + camera.height)])
-
-
-def axes_of(poses: FloatArray, camera: Camera) -> FloatArray:
-    """Return the axes (N, 3, 3) of the camera at poses (N, 3), rows forward, left, up, in the map frame."""
-    yaw, zero = poses[:, 2], np.zeros(len(poses))
-    cos, sin, lift, flat = np.cos(yaw), np.sin(yaw), np.sin(camera.tilt), np.cos(camera.tilt)
-    forward = np.stack([flat * cos, flat * sin, zero + lift], axis=-1)
-    left = np.stack([-sin, cos, zero], axis=-1)
-    up = np.stack([-lift * cos, -lift * sin, zero + flat], axis=-1)
-    return np.stack([forward, left, up], axis=1)
 
 
 def boxes_in_frustum(camera: Camera, corners_camera: FloatArray) -> BoolArray:

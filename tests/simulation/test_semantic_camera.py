@@ -6,7 +6,8 @@ from simulation_scenes import CAMERA, ROBOT, box, table_room
 
 from qsrlang.geometry.pose import Pose2
 from qsrlang.planning.sensing import Camera
-from qsrlang.simulation.camera import axes_of, boxes_in_frustum, eyes_of
+from qsrlang.planning.sight import axes_of, eyes_of
+from qsrlang.simulation.camera import boxes_in_frustum
 from qsrlang.simulation.depth import depth_image
 from qsrlang.simulation.objects import Placement
 from qsrlang.simulation.rooms import Room, Thing
