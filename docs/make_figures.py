@@ -73,7 +73,8 @@ def tell_comparisons(scenario: str, cameras: Sequence[str | None], trials: int, 
             replace_table(mark, f"`{command} --variant {variant}{option}`\n\n{markdown(result)}")
             times = {arm: [t.seconds if t.found else math.inf for t in result.of(arm)] for arm in arms}
             qsr.save_figure(
-                qsr.draw_found_by_time(times, loaded.arm(arms[0]).limits.seconds), IMAGES / f"found-{mark}.png"
+                qsr.draw_found_by_time(times, loaded.arm(arms[0]).limits.seconds),
+                IMAGES / f"found-{mark}.png",
             )
 
 

@@ -19,6 +19,7 @@ from .experiments.statistics import Interval
 from .experiments.stories import Opening, SearchStory, open_search, search
 from .experiments.summaries import ArmSummary, Comparison
 from .experiments.trials import Trial
+from .geometry.angles import relative_angle
 from .geometry.pose import Pose2
 from .geometry.viewcone import Sector, Triangle, ViewCone
 from .language.diagnostics import Diagnostic, LanguageError
@@ -37,9 +38,10 @@ from .mixtures.queries import KnowledgeBase, load, parse_knowledge
 from .planning.belief import voxel_weights
 from .planning.loop import search_world
 from .planning.outcome import Limits, SearchResult, SearchStep
-from .planning.planners import PlanesPlanner, Planner, QSRPlanner, RandomPlanner
+from .planning.planners import BeliefPlanner, PlanesPlanner, Planner, QSRPlanner, RandomPlanner
 from .planning.seeding import TrialSeeds
 from .planning.sensing import Camera, Robot
+from .planning.sight import Sight
 from .planning.visibility import in_view, view_values
 from .planning.world import Detection, Drive, Look, World
 from .plotting.answers import draw_answer
@@ -60,6 +62,7 @@ from .simulation.world import PybulletWorld
 
 __all__ = [
     "ArmSummary",
+    "BeliefPlanner",
     "BlockedPoseError",
     "Camera",
     "Cell",
@@ -102,6 +105,7 @@ __all__ = [
     "SearchStep",
     "SearchStory",
     "Sector",
+    "Sight",
     "Supports",
     "TooManyWorldsError",
     "Trial",
@@ -138,6 +142,7 @@ __all__ = [
     "parse_query",
     "read_octomap",
     "read_ros_map",
+    "relative_angle",
     "save_figure",
     "scene_picture",
     "search",

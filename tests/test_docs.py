@@ -4,11 +4,13 @@ import re
 import runpy
 import shlex
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
 
 from qsrlang.cli.main import main
+from qsrlang.experiments.scenariofiles import ScenarioEntry
 
 ROOT = Path(__file__).parents[1]
 DOCUMENTS = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")])
@@ -28,7 +30,7 @@ def blocks(language):
 
 def test_every_block_says_what_it_is():
     kinds = {kind for path in DOCUMENTS for kind, _ in BLOCK.findall(path.read_text(encoding="utf-8"))}
-    assert kinds <= {"python", "sh", "qsr", "text"}
+    assert kinds <= {"python", "sh", "qsr", "toml"}
 
 
 @pytest.mark.parametrize("text", blocks("python"))
@@ -42,6 +44,11 @@ def test_knowledge_blocks_are_free_of_errors(text):
     import qsrlang as qsr
 
     qsr.parse_knowledge(text)
+
+
+@pytest.mark.parametrize("text", blocks("toml"))
+def test_scenario_blocks_have_the_fields_of_a_scenario(text):
+    ScenarioEntry.model_validate(tomllib.loads(text))
 
 
 @pytest.mark.parametrize("text", blocks("sh"))

@@ -77,10 +77,13 @@ class PolarDensity:
         Quadrature over the angle; closed form in r: E r = (lo + hi) / 2, E r^2 = (lo^2 + lo hi + hi^2) / 3.
         """
         directions, weights, low, high = self._rays(stance, strict=True)
-        u = unit(directions)
-        mean = np.einsum("pn,pn,pnd->pd", weights, 0.5 * (low + high), u)
-        second = np.einsum("pn,pn,pni,pnj->pij", weights, (low**2 + low * high + high**2) / 3.0, u, u)
-        return stance.positions + mean, second - np.einsum("pi,pj->pij", mean, mean)
+        x, y = np.cos(directions), np.sin(directions)
+        first = weights * 0.5 * (low + high)
+        second = weights * (low**2 + low * high + high**2) / 3.0
+        mean = np.stack([(first * x).sum(axis=1), (first * y).sum(axis=1)], axis=-1)
+        xx, xy, yy = ((second * product).sum(axis=1) for product in (x * x, x * y, y * y))
+        square = np.stack([np.stack([xx, xy], axis=-1), np.stack([xy, yy], axis=-1)], axis=-2)
+        return stance.positions + mean, square - mean[:, :, None] * mean[:, None, :]
 
     def sample(self, stance: Stance, rng: np.random.Generator) -> FloatArray:
         """Return one draw of x from each stand: (P, 2)."""

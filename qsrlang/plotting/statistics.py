@@ -82,7 +82,7 @@ def _add_names(axes: Axes, arms: Mapping[str, FloatArray], curves: Mapping[str, 
     for arm, height in zip(order, heights, strict=True):
         end, colour = curves[arm]
         label = axes.annotate(
-            f"{arm}  {100.0 * end:.0f} % of {len(arms[arm])}",
+            f"{arm}  {100.0 * end:.3g} % of {len(arms[arm])}",
             (1.0, height),
             xycoords="axes fraction",
             xytext=(5.0, 0.0),

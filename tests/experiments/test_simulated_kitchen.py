@@ -83,7 +83,7 @@ def test_what_the_map_predicts_is_what_the_camera_sees():
     poses = place.reachable.sample_poses(4_000, np.random.default_rng(2))
     with build_world(scenario, place, "A") as world:
         truth = world.visible(poses)[:, : len(world.objects)]
-        above = np.array([cup.position for cup in world.objects]) + [0.0, 0.0, 0.1]
+        above = np.add([cup.position for cup in world.objects], [0.0, 0.0, 0.1])
         predicted = sight.visible(poses, above)
         assert truth.sum() > 100
         assert (truth == predicted).mean() > 0.98
