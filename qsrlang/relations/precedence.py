@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from qsrlang.language import syntax as s
 from qsrlang.language.diagnostics import Diagnostic, Label, Severity
@@ -75,9 +75,28 @@ def _class_pair(constraint: Constraint, symbols: Symbols) -> Pair:
 
 
 def _shares(evidence: list[Evidence]) -> tuple[Alternative, ...]:
-    weighty = [one for one in evidence if one.weight > 0.0]
+    weighty = [one for one in _pooled(evidence) if one.weight > 0.0]
     total = sum(one.weight for one in weighty)
     return tuple(Alternative(one.weight / total, one.constraints) for one in weighty)
+
+
+def _pooled(evidence: Iterable[Evidence]) -> list[Evidence]:
+    """Return the evidence with what says the same counted together, under the first statement that says it."""
+    groups: dict[object, list[Evidence]] = defaultdict(list)
+    for one in evidence:
+        groups[_key(one), tuple(constraint.fit for constraint in one.constraints)].append(one)
+    return [_together(group) for group in groups.values()]
+
+
+def _together(group: list[Evidence]) -> Evidence:
+    first, *others = group
+    if not others:
+        return first
+    constraints = tuple(
+        replace(one, statement=replace(one.statement, text=f"{one.statement.text} (and {len(others)} more)"))
+        for one in first.constraints
+    )
+    return Evidence(sum(one.weight for one in group), constraints, first.node)
 
 
 def _updated(beliefs: list[Evidence], counts: list[Evidence], symbols: Symbols) -> tuple[Alternative, ...]:
@@ -85,7 +104,7 @@ def _updated(beliefs: list[Evidence], counts: list[Evidence], symbols: Symbols) 
     strength = symbols.defaults["strength"]
     total = strength + sum(one.weight for one in counts)
     keyed: dict[object, list[Evidence]] = defaultdict(list)
-    for one in counts:
+    for one in _pooled(counts):
         keyed[_key(one)].append(one)
     found = []
     for belief in beliefs:

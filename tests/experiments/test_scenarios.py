@@ -100,7 +100,12 @@ def test_the_preset_of_the_paper_holds_its_numbers():
 BAD_TEXT = [
     ("target = ", "tagret = ", "unknown field 'tagret'", "remove it or use title, target"),
     ('target = "Cup"\n', "", "the field 'target' is missing", "add it"),
-    ('planner = "qsr"', 'planner = "qrs"', "field 'arms.qsr.planner'", "'random', 'planes', 'qsr' or 'belief'"),
+    (
+        'planner = "qsr"',
+        'planner = "qrs"',
+        "field 'arms.qsr.planner'",
+        "'random', 'planes', 'qsr' or 'belief'",
+    ),
     ("x = 1.0", 'x = "one"', "field 'start.x'", "valid number"),
     ("x = 1.0", "x = inf", "field 'start.x'", "change it"),
     ("x = 1.0", "x = 1.0\nz = 2.0", "unknown field 'start.z'", "x, y, facing_deg"),

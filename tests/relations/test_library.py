@@ -92,3 +92,10 @@ def test_a_belief_on_one_pair_leaves_the_other_pairs_of_an_observation_alone():
     assert [finding.code for finding in known.diagnostics] == []
     answer = known.where("B", {"M": qsr.Pose2(0.0, 0.0, 3.14159)})
     assert len(answer.weights) == 2, "the belief, updated by the observation"
+
+
+def test_observations_that_say_the_same_are_counted_together():
+    text = "dynamic A. static M { front: yes }. observe left-of(A, M)." + " observe 2 × right-of(A, M)." * 3
+    answer = qsr.parse_knowledge(text).where("A")
+    assert [round(weight, 12) for weight in answer.weights] == [round(6 / 7, 12), round(1 / 7, 12)]
+    assert answer.components[0].statements == ("<text>:1: observe 2 × right-of(A, M) (and 2 more)",)
