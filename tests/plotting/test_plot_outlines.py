@@ -92,7 +92,7 @@ def test_outline_lies_on_the_border_and_runs_counter_clockwise(cone):
         on_arc = np.isclose(r, cone.far) | np.isclose(r, cone.near)
         assert on_arc.all() and (np.abs(angle)[r > 1e-9] <= 0.5 * cone.field_of_view + 1e-9).all()
     else:
-        assert cone.contains(0.999 * outline[1:] + 0.001 * outline.mean(axis=0)).all()
+        assert cone.limits.contain(0.999 * outline[1:] + 0.001 * outline.mean(axis=0)).all()
 
 
 @FEW
