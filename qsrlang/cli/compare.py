@@ -51,13 +51,14 @@ def compare(
         Path | None, typer.Option(help="The per-trial CSV, under runs/ by default; resumed from.")
     ] = None,
     camera: Annotated[str | None, typer.Option(help="A camera preset in place of the scenario's.")] = None,
+    knowledge: Annotated[str | None, typer.Option(help="A .qsr file in place of the scenario's.")] = None,
     robot: Annotated[str | None, typer.Option(help="A robot preset in place of the scenario's.")] = None,
     form: Annotated[
         TableFormat, typer.Option("--format", help="How the result is printed.")
     ] = TableFormat.TABLE,
 ) -> None:
     """Compare search methods over many trials that share their random numbers."""
-    loaded = load_scenario(scenario, camera, robot)
+    loaded = load_scenario(scenario, camera, robot, knowledge)
     names = None if arms is None else [name.strip() for name in arms.split(",") if name.strip()]
     made = comparing.experiment_of(loaded, seed, variant)
     path = output or _default_output(made)

@@ -35,6 +35,7 @@ def search(
         str | None, typer.Option(help="Which objects are there; the first variant by default.")
     ] = None,
     camera: Annotated[str | None, typer.Option(help="A camera preset in place of the scenario's.")] = None,
+    knowledge: Annotated[str | None, typer.Option(help="A .qsr file in place of the scenario's.")] = None,
     robot: Annotated[str | None, typer.Option(help="A robot preset in place of the scenario's.")] = None,
     output: Annotated[
         Path | None, typer.Option(help="Folder of the pictures, under runs/ by default.")
@@ -43,7 +44,7 @@ def search(
     form: OutputFormat = Format.TEXT,
 ) -> None:
     """Search for an object once and tell every step: what is believed, where it looks, why, what it saw."""
-    opening = open_search(load_scenario(scenario, camera, robot), target, arm, variant)
+    opening = open_search(load_scenario(scenario, camera, robot, knowledge), target, arm, variant)
     folder = (
         _folder(output or RUNS / f"search-{opening.scenario.name}-{arm}-seed-{seed}") if pictures else None
     )

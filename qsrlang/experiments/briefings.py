@@ -124,8 +124,12 @@ def known_to(scenario: Scenario, arm: Arm, place: Place) -> KnowledgeBase:
 
 
 def _belief(known: KnowledgeBase, arm: Arm, target: str) -> Where:
+    """Return where the target is in the map frame; an answer relative to a class without landmarks is of no use."""
     try:
-        return known.where(target)
+        answer = known.where(target)
+        if answer.frame != "map":
+            raise UnreachedTargetError(target, [f"its chains start at {answer.frame}, which has no landmark"])
+        return answer
     except UnknownNameError as error:
         raise UnknownNameError(f"class of {arm.knowledge}:", error.name, error.known) from None
     except UnreachedTargetError as error:

@@ -25,6 +25,7 @@ from qsrlang.geometry.pose import Pose2
 from qsrlang.planning.outcome import Limits
 from qsrlang.planning.planners import PlannerName
 from qsrlang.planning.sensing import Camera, Robot
+from qsrlang.relations.imports import find_knowledge, read_library, read_source
 from qsrlang.resources import data_root, resource_root
 
 EVERYTHING = "all"
@@ -94,13 +95,18 @@ class Scenario:
         return tuple(placement for placement in self.placements if placement.name in members)
 
 
-def load_scenario(scenario: str | Path, camera: str | None = None, robot: str | None = None) -> Scenario:
+def load_scenario(
+    scenario: str | Path, camera: str | None = None, robot: str | None = None, knowledge: str | None = None
+) -> Scenario:
     """Return a shipped scenario by its name, or the one in a file whose path ends in .toml.
 
-    `camera` and `robot` name presets to use in place of the scenario's. Raises FileError and UnknownNameError.
+    `camera` and `robot` name presets, `knowledge` a .qsr file, to use in place of the scenario's; arms with knowledge
+    of their own keep it. Raises FileError and UnknownNameError.
     """
     path = find_scenario(str(scenario))
     entry = read_entry(path, ScenarioEntry)
+    if knowledge is not None:
+        entry = entry.model_copy(update={"knowledge": str(find_knowledge(knowledge).resolve())})
     camera_preset = find_preset("cameras", camera or entry.camera, path.parent)
     robot_preset = find_preset("robots", robot or entry.robot, path.parent)
     made = Scenario(
@@ -123,11 +129,6 @@ def load_scenario(scenario: str | Path, camera: str | None = None, robot: str | 
         fingerprint="",
     )
     return replace(made, fingerprint=_fingerprint(entry, made))
-
-
-def knowledge_file(name: str) -> Path:
-    """Return the file of a knowledge base: a path that ends in .qsr, or the name of a shipped one."""
-    return Path(name) if name.endswith(".qsr") else resource_root("knowledge") / f"{name}.qsr"
 
 
 def find_scenario(name: str) -> Path:
@@ -191,9 +192,16 @@ def _fingerprint(entry: ScenarioEntry, made: Scenario) -> str:
         *(repr(arm.preset) for arm in arms),
     ]
     digest = hashlib.sha256("\n".join(said).encode())
-    for path in sorted({knowledge_file(arm.knowledge) for arm in arms} | set(_files(made.place))):
+    told = (file for name in sorted({arm.knowledge for arm in arms}) for file in _knowledge_files(name))
+    for path in (*told, *_files(made.place)):
         digest.update(path.read_bytes() if path.is_file() else b"")
     return digest.hexdigest()[:12]
+
+
+def _knowledge_files(name: str) -> Iterable[Path]:
+    """Return a knowledge file with all it imports; nothing where it is missing, which the arm will tell."""
+    path = find_knowledge(name)
+    return read_library(read_source(path)).files if path.is_file() else ()
 
 
 def _files(place: MapFiles | str) -> Iterable[Path]:

@@ -19,9 +19,10 @@ MAX_FILES = 256
 
 @dataclass(frozen=True, slots=True)
 class Library:
-    """The documents of one piece of knowledge, the core first, with all that was found wrong in them."""
+    """The documents of one piece of knowledge, the core first, their files, and all that was found wrong in them."""
 
     documents: tuple[Document, ...]
+    files: tuple[Path, ...]
     diagnostics: tuple[Diagnostic, ...]
 
 
@@ -34,17 +35,19 @@ def read_library(source: Source) -> Library:
     waiting = deque([source] if is_core else [core, source])
     seen = {one.path.resolve() for one in waiting if one.path}
     documents: list[Document] = []
+    files: list[Path] = []
     diagnostics: list[Diagnostic] = []
     while waiting:
         current = waiting.popleft()
         parsed = parse_source(current)
         documents.append(parsed.document)
+        files += [current.path] if current.path else []
         diagnostics.extend(parsed.diagnostics)
         diagnostics.extend(_versions(parsed.document))
         for statement in parsed.document.statements:
             if isinstance(statement, Import):
                 _follow(statement, current, seen, waiting, diagnostics)
-    return Library(tuple(documents), tuple(diagnostics))
+    return Library(tuple(documents), tuple(files), tuple(diagnostics))
 
 
 def find_knowledge(name: str, beside: Path | None = None) -> Path:

@@ -207,6 +207,31 @@ def test_a_landmark_outside_the_map(cell, change):
     assert "landmark 'table-9' at (30.00 m, 1.00 m) lies outside the map" in one_line(error)
 
 
+def test_knowledge_without_a_landmark_in_the_place_is_refused():
+    """Its answer is relative to a class and says nothing of the map."""
+    with pytest.raises(UnreachedTargetError, match="start at Monitor, which has no landmark"):
+        open_search(load_scenario("kitchen", knowledge="office/desk"))
+
+
+def test_knowledge_can_be_replaced(tmp_path):
+    path = tmp_path / "mine.qsr"
+    path.write_text('import "kitchen/cups".')
+    given, shipped = load_scenario("kitchen", knowledge=str(path)), load_scenario("kitchen")
+    assert given.arm("qsr").knowledge == str(path)
+    assert given.fingerprint != shipped.fingerprint
+    assert load_scenario("kitchen", knowledge=str(path)).fingerprint == given.fingerprint
+
+
+def test_the_fingerprint_follows_imported_knowledge(cell):
+    other = cell.with_name("more.qsr")
+    other.write_text("dynamic Spoon2.")
+    knowledge = cell.with_name("cups.qsr")
+    knowledge.write_text('import "more.qsr".\n' + knowledge.read_text())
+    first = load_scenario(cell).fingerprint
+    other.write_text("dynamic Spoon3.")
+    assert load_scenario(cell).fingerprint != first
+
+
 def test_a_target_that_no_chain_reaches(cell):
     with pytest.raises(UnreachedTargetError) as error:
         search(cell, target="Spoon")
