@@ -38,7 +38,7 @@ from .mixtures.queries import KnowledgeBase, load, parse_knowledge
 from .planning.belief import voxel_weights
 from .planning.loop import search_world
 from .planning.outcome import Limits, SearchResult, SearchStep
-from .planning.planners import BeliefPlanner, PlanesPlanner, Planner, QSRPlanner, RandomPlanner
+from .planning.planners import BeliefPlanner, Planner, QSRPlanner, RandomPlanner
 from .planning.seeding import TrialSeeds
 from .planning.sensing import Camera, Robot
 from .planning.sight import Sight
@@ -90,7 +90,6 @@ __all__ = [
     "Opening",
     "OutsideMapError",
     "Placement",
-    "PlanesPlanner",
     "Planner",
     "Pose2",
     "PybulletWorld",

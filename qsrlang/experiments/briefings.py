@@ -19,7 +19,7 @@ from qsrlang.mixtures.answers import Where
 from qsrlang.mixtures.queries import KnowledgeBase, load
 from qsrlang.planning.belief import voxel_weights
 from qsrlang.planning.outcome import Limits
-from qsrlang.planning.planners import BeliefPlanner, PlanesPlanner, Planner, QSRPlanner, RandomPlanner
+from qsrlang.planning.planners import BeliefPlanner, Planner, QSRPlanner, RandomPlanner
 from qsrlang.planning.sight import Sight
 from qsrlang.relations.graph import Landmark
 
@@ -103,7 +103,7 @@ def _planner(scenario: Scenario, arm: Arm, place: Place, supports: Supports, wei
         case "random":
             return RandomPlanner()
         case "planes":
-            return PlanesPlanner(cone, places)
+            return QSRPlanner.of_planes(cone, places)
         case "qsr":
             return QSRPlanner(cone, places, weights)
         case "belief":

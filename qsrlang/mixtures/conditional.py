@@ -31,7 +31,7 @@ class Conditional(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class View:
+class Standpoint:
     """Where axes and boxes come from: blocks of relatum, root landmark and support in the state, and the viewer."""
 
     relatum: slice
@@ -70,7 +70,7 @@ class PolarConditional:
 
     density: PolarDensity
     frames: tuple[Frame, ...]
-    view: View
+    standpoint: Standpoint
 
     def moments(self, states: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return mean (P, 2) and covariance (P, 2, 2) of x."""
@@ -85,9 +85,11 @@ class PolarConditional:
         return self.density.pdf(points, self._stance(states))
 
     def _stance(self, states: FloatArray) -> Stance:
-        axes = np.stack([self.view.axes(states, frame) for frame in self.frames], axis=-1)
-        support = None if self.view.support is None else states[:, self.view.support]
-        return Stance(states[:, self.view.relatum][:, :2], self.view.box_yaws(states), axes, support)
+        axes = np.stack([self.standpoint.axes(states, frame) for frame in self.frames], axis=-1)
+        support = None if self.standpoint.support is None else states[:, self.standpoint.support]
+        return Stance(
+            states[:, self.standpoint.relatum][:, :2], self.standpoint.box_yaws(states), axes, support
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,12 +98,12 @@ class FitConditional:
 
     fit: Fit
     frame: Frame
-    view: View
+    standpoint: Standpoint
 
     def moments(self, states: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return mean (P, 2) and covariance (P, 2, 2) of x."""
         basis = self._basis(states)
-        positions = states[:, self.view.relatum][:, :2]
+        positions = states[:, self.standpoint.relatum][:, :2]
         return positions + basis @ np.array(self.fit.mean), basis @ self._covariance() @ basis.transpose(
             0, 2, 1
         )
@@ -120,7 +122,7 @@ class FitConditional:
         return np.asarray(np.exp(-0.5 * squares) / (2.0 * np.pi * np.sqrt(np.linalg.det(covariance))))
 
     def _basis(self, states: FloatArray) -> FloatArray:
-        axis = self.view.axes(states, self.frame)
+        axis = self.standpoint.axes(states, self.frame)
         return np.stack([unit(axis), hand(self.frame) * unit(axis + 0.5 * np.pi)], axis=-1)
 
     def _covariance(self) -> FloatArray:

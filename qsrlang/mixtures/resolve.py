@@ -14,7 +14,7 @@ from qsrlang.mixtures.conditional import (
     Conditional,
     FitConditional,
     PolarConditional,
-    View,
+    Standpoint,
     polar_density,
     support_of,
 )
@@ -147,11 +147,13 @@ def make_conditional(
     constraint, root, relatum = step.constraint, step.root, blocks[step.relatum]
     own_heading = step.relatum == root.name and root.heading is not None
     support = None if step.support is None else blocks[step.support.name]
-    view = View(relatum, blocks[root.name], support, own_heading, root.heading is not None, root.name, viewer)
+    standpoint = Standpoint(
+        relatum, blocks[root.name], support, own_heading, root.heading is not None, root.name, viewer
+    )
     if constraint.fit is not None:
-        return FitConditional(constraint.fit, constraint.atoms[0].frame, view)
+        return FitConditional(constraint.fit, constraint.atoms[0].frame, standpoint)
     density, frames = polar_density(graph, constraint, step.support)
-    return PolarConditional(density, frames, view)
+    return PolarConditional(density, frames, standpoint)
 
 
 def _orientation(plan: Plan, viewer: Pose2 | None) -> float:

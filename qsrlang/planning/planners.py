@@ -63,7 +63,8 @@ class RandomPlanner(Forgetful):
 class QSRPlanner(Forgetful):
     """Takes the candidate with the greatest value of equation 3, the first of equals (Algorithm 1).
 
-    `voxels_map` (K, 2) are the support voxels [m] and `weights` (K,) what each is worth.
+    `voxels_map` (K, 2) are the support voxels [m] and `weights` (K,) what each is worth. With every weight 1 it is
+    the paper's method of supporting planes.
     """
 
     cone: ViewCone
@@ -75,26 +76,14 @@ class QSRPlanner(Forgetful):
         object.__setattr__(self, "voxels_map", voxels)
         object.__setattr__(self, "weights", frozen_array("their weights", self.weights, (len(voxels),)))
 
+    @classmethod
+    def of_planes(cls, cone: ViewCone, voxels_map: FloatArray) -> QSRPlanner:
+        """Return the planner that takes the candidate with the most support voxels (K, 2) [m] in view."""
+        return cls(cone, voxels_map, np.ones(len(voxels_map)))
+
     def choose(self, candidates_map: FloatArray, robot_pose: Pose2, rng: np.random.Generator) -> Choice:
         """Choose argmax over the candidates (N, 3) of sum_i P(v_i) In(v_i, Viewcone(psi))."""
         values = view_values(candidates_map, self.cone, self.voxels_map, self.weights)
-        return Choice(int(np.argmax(values)), values)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class PlanesPlanner(Forgetful):
-    """Takes the candidate with the most support voxels (K, 2) [m] in view: equation 3 with every weight 1."""
-
-    cone: ViewCone
-    voxels_map: FloatArray
-
-    def __post_init__(self) -> None:
-        voxels = frozen_array("the support voxels of a planner", self.voxels_map, (None, 2))
-        object.__setattr__(self, "voxels_map", voxels)
-
-    def choose(self, candidates_map: FloatArray, robot_pose: Pose2, rng: np.random.Generator) -> Choice:
-        """Choose argmax over the candidates (N, 3) of sum_i In(v_i, Viewcone(psi))."""
-        values = view_values(candidates_map, self.cone, self.voxels_map, np.ones(len(self.voxels_map)))
         return Choice(int(np.argmax(values)), values)
 
 

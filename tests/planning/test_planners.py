@@ -4,7 +4,7 @@ import pytest
 from qsrlang.errors import ValueRangeError
 from qsrlang.geometry.pose import Pose2
 from qsrlang.geometry.viewcone import Triangle
-from qsrlang.planning.planners import Choice, PlanesPlanner, QSRPlanner, RandomPlanner
+from qsrlang.planning.planners import Choice, QSRPlanner, RandomPlanner
 
 HERE = Pose2(0, 0)
 CONE = Triangle(3, 1)
@@ -18,14 +18,14 @@ def rng():
 
 def test_qsr_follows_the_weights_and_planes_the_count():
     qsr = QSRPlanner(CONE, VOXELS, np.array([1.0, 1.0, 1.0, 7.5])).choose(CANDIDATES, HERE, rng())
-    planes = PlanesPlanner(CONE, VOXELS).choose(CANDIDATES, HERE, rng())
+    planes = QSRPlanner.of_planes(CONE, VOXELS).choose(CANDIDATES, HERE, rng())
     assert (qsr.index, qsr.values.tolist()) == (2, [1.0, 2.0, 7.5])
     assert (planes.index, planes.values.tolist()) == (1, [1.0, 2.0, 1.0])
 
 
 def test_the_first_of_equals_is_taken():
-    assert PlanesPlanner(CONE, VOXELS[[0, 3]]).choose(CANDIDATES, HERE, rng()).index == 0
-    assert PlanesPlanner(CONE, np.empty((0, 2))).choose(CANDIDATES, HERE, rng()).index == 0
+    assert QSRPlanner.of_planes(CONE, VOXELS[[0, 3]]).choose(CANDIDATES, HERE, rng()).index == 0
+    assert QSRPlanner.of_planes(CONE, np.empty((0, 2))).choose(CANDIDATES, HERE, rng()).index == 0
 
 
 def test_choosing_twice_chooses_the_same():

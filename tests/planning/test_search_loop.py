@@ -12,7 +12,7 @@ from qsrlang.maps.occupancy import Cell, OccupancyGrid
 from qsrlang.maps.paths import path_length, turn_angles
 from qsrlang.planning.loop import search_world
 from qsrlang.planning.outcome import Limits, SearchResult
-from qsrlang.planning.planners import PlanesPlanner, RandomPlanner
+from qsrlang.planning.planners import QSRPlanner, RandomPlanner
 from qsrlang.planning.seeding import TrialSeeds
 from qsrlang.planning.visibility import in_view
 from qsrlang.planning.world import Detection, Drive, Look
@@ -126,7 +126,7 @@ def test_the_pose_limit(navigation):
 
 def test_all_planners_draw_the_same_candidates(navigation):
     rng = np.random.default_rng(0)
-    planes = PlanesPlanner(CONE, rng.uniform(0, 5, (200, 2)))
+    planes = QSRPlanner.of_planes(CONE, rng.uniform(0, 5, (200, 2)))
     nothing = Limits(120.0, 5, 20)
     first = run(navigation, PaperWorld(things=()), RandomPlanner(), nothing, trial=7)
     second = run(navigation, PaperWorld(things=()), planes, nothing, trial=7)
@@ -152,7 +152,7 @@ def test_every_step_is_told_as_it_happens(navigation):
 
 
 def test_a_step_knows_its_ranking(navigation):
-    planes = PlanesPlanner(CONE, np.random.default_rng(0).uniform(0, 5, (200, 2)))
+    planes = QSRPlanner.of_planes(CONE, np.random.default_rng(0).uniform(0, 5, (200, 2)))
     step = run(navigation, planner=planes).steps[0]
     assert step.ranking[0] == step.chosen
     assert sorted(step.ranking) == list(range(20))
