@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from qsrlang.language.syntax import And, Atom, Density, Formula, Name, Not, Or
+from qsrlang.language.syntax import And, Atom, Density, Formula, Mix, Name, Not, Or
 
 MAX_CONJUNCTIONS = 64
 
@@ -20,6 +20,18 @@ class Relation:
     converse: str | None = None
     disjoint: tuple[str, ...] = ()
     symmetric: bool = False
+
+    @property
+    def terms(self) -> tuple[tuple[float, Relation], ...]:
+        """The relation as exclusive alternatives with shares: one for each part of a `mix` of angles."""
+        return tuple((share, replace(self, angle=angle)) for share, angle in _parts(self.angle))
+
+
+def _parts(angle: Density | None) -> tuple[tuple[float, Density | None], ...]:
+    if not isinstance(angle, Mix):
+        return ((1.0, angle),)
+    share = 1.0 / len(angle.parts)
+    return tuple((share * inner, part) for one in angle.parts for inner, part in _parts(one))
 
 
 class TooManyConjunctions(Exception):

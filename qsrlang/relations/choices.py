@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections import defaultdict
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from itertools import islice, product
 
 from qsrlang.language import syntax as s
 from qsrlang.relations.calculus import MAX_CONJUNCTIONS, NoOpposite, TooManyConjunctions, conjunctions
@@ -72,26 +74,49 @@ def _evidence(
         symbols.report("Q103", f"the formula has more than {MAX_CONJUNCTIONS} alternatives", node)
         return []
     part = weight / len(disjuncts)
-    found = [Evidence(part, _constraints(disjunct, fit, node, symbols), node) for disjunct in disjuncts]
+    found = [
+        Evidence(part * share, _constraints(relations, fit, node), node)
+        for disjunct in disjuncts
+        for share, relations in _terms(disjunct, symbols, split=fit is None)
+    ]
+    if len(found) > MAX_CONJUNCTIONS:
+        symbols.report("Q103", f"the formula has more than {MAX_CONJUNCTIONS} alternatives", node)
+        return []
     if fit and (len(found) > 1 or len(found[0].constraints) > 1):
         symbols.report("Q408", "a metric fit belongs to one pair", fit, "the formula speaks of several")
     return found
 
 
-def _constraints(
-    atoms: tuple[s.Atom, ...], fit: s.Fit | None, node: s.Node, symbols: Symbols
-) -> tuple[Constraint, ...]:
-    grouped: dict[Pair, list[s.Atom]] = defaultdict(list)
+_Related = tuple[s.Atom, AtomicRelation]
+
+
+def _terms(
+    atoms: tuple[s.Atom, ...], symbols: Symbols, split: bool
+) -> Iterator[tuple[float, tuple[_Related, ...]]]:
+    """Yield a conjunction as exclusive alternatives: one for each combination of the parts of its relations."""
+    choices = []
     for atom in atoms:
-        grouped[atom.arguments[0].text, atom.arguments[1].text].append(atom)
+        relation = symbols.relations[atom.relation.text]
+        terms = relation.terms if split else ((1.0, relation),)
+        choices.append([(share, (atom, AtomicRelation(term, atom.frame))) for share, term in terms])
+    for combination in islice(product(*choices), MAX_CONJUNCTIONS + 1):
+        yield math.prod(share for share, _ in combination), tuple(related for _, related in combination)
+
+
+def _constraints(related: tuple[_Related, ...], fit: s.Fit | None, node: s.Node) -> tuple[Constraint, ...]:
+    grouped: dict[Pair, list[_Related]] = defaultdict(list)
+    for atom, relation in related:
+        grouped[atom.arguments[0].text, atom.arguments[1].text].append((atom, relation))
     return tuple(
-        Constraint(referent, relatum, _relations(pair_atoms, symbols), _statement(node, pair_atoms), fit)
-        for (referent, relatum), pair_atoms in grouped.items()
+        Constraint(
+            referent,
+            relatum,
+            tuple(relation for _, relation in members),
+            _statement(node, [atom for atom, _ in members]),
+            fit,
+        )
+        for (referent, relatum), members in grouped.items()
     )
-
-
-def _relations(atoms: list[s.Atom], symbols: Symbols) -> tuple[AtomicRelation, ...]:
-    return tuple(AtomicRelation(symbols.relations[atom.relation.text], atom.frame) for atom in atoms)
 
 
 def _statement(node: s.Node, atoms: list[s.Atom]) -> Statement:

@@ -124,7 +124,7 @@ def _refined(belief: Evidence, share: float, fitted: list[Evidence]) -> list[Alt
 
 def _key(evidence: Evidence) -> object:
     return frozenset(
-        (c.referent, c.relatum, frozenset((a.relation.name, a.frame) for a in c.atoms))
+        (c.referent, c.relatum, frozenset((a.relation, a.frame) for a in c.atoms))
         for c in evidence.constraints
     )
 

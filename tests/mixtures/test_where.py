@@ -129,6 +129,14 @@ def test_the_atoms_of_one_scene_hold_together():
     assert (np.abs(answer.means[:, 1]) > 0.5).all(), "never left, then right"
 
 
+def test_a_mix_of_angles_is_a_mixture_not_one_wide_gaussian():
+    beside = "relation beside(a, b) { angle: mix(normal(90 deg, 15 deg), normal(-90 deg, 15 deg)) }. "
+    known = qsr.parse_knowledge(HEAD + beside + "observe 3 × beside(A, M). observe 1 × behind-of(A, M).")
+    answer = known.where("A", {"M": qsr.Pose2(0.0, 0.0, math.pi)})
+    assert sorted(answer.weights) == pytest.approx([0.25, 0.375, 0.375])
+    assert sorted(np.sign(answer.means[:, 1].round(9))) == [-1.0, 0.0, 1.0]
+
+
 def test_the_order_of_statements_does_not_matter():
     statements = ["observe 15 × left-of(A, M).", "observe 85 × right-of(A, M).", "observe behind-of(B, A)."]
     answers = [
