@@ -14,6 +14,7 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
+from qsrlang.cli.options import CameraName, KnowledgeName, RobotName, ScenarioName, Seed, Variant
 from qsrlang.experiments import comparing
 from qsrlang.experiments.recording import Experiment, read_trials
 from qsrlang.experiments.scenarios import load_scenario
@@ -33,26 +34,22 @@ class TableFormat(StrEnum):
 
 
 def compare(
-    scenario: Annotated[
-        str, typer.Argument(metavar="SCENARIO", help="A shipped name, or a path that ends in .toml.")
-    ],
+    scenario: ScenarioName,
     arms: Annotated[
         str | None, typer.Option(help="Names of arms, with commas; all of them by default.")
     ] = None,
     trials: Annotated[int, typer.Option(min=1, help="Trials of each arm.")] = 200,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of all random numbers; the arms share them.")] = 0,
-    variant: Annotated[
-        str | None, typer.Option(help="Which objects are there; the first variant by default.")
-    ] = None,
+    seed: Seed = 0,
+    variant: Variant = None,
     processes: Annotated[
         int | None, typer.Option(min=1, help="Processes; one for each core by default.")
     ] = None,
     output: Annotated[
         Path | None, typer.Option(help="The per-trial CSV, under runs/ by default; resumed from.")
     ] = None,
-    camera: Annotated[str | None, typer.Option(help="A camera preset in place of the scenario's.")] = None,
-    knowledge: Annotated[str | None, typer.Option(help="A .qsr file in place of the scenario's.")] = None,
-    robot: Annotated[str | None, typer.Option(help="A robot preset in place of the scenario's.")] = None,
+    camera: CameraName = None,
+    knowledge: KnowledgeName = None,
+    robot: RobotName = None,
     form: Annotated[
         TableFormat, typer.Option("--format", help="How the result is printed.")
     ] = TableFormat.TABLE,

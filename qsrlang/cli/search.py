@@ -10,7 +10,16 @@ import typer
 from rich.console import Console
 
 from qsrlang.cli.narration import narrate_end, narrate_opening, narrate_step, story_json
-from qsrlang.cli.options import Format, OutputFormat
+from qsrlang.cli.options import (
+    CameraName,
+    Format,
+    KnowledgeName,
+    OutputFormat,
+    RobotName,
+    ScenarioName,
+    Seed,
+    Variant,
+)
 from qsrlang.errors import FileError
 from qsrlang.experiments.pictures import draw_steps
 from qsrlang.experiments.scenarios import load_scenario
@@ -22,21 +31,17 @@ RUNS = Path("runs")
 
 
 def search(
-    scenario: Annotated[
-        str, typer.Argument(metavar="SCENARIO", help="A shipped name, or a path that ends in .toml.")
-    ],
+    scenario: ScenarioName,
     arm: Annotated[str, typer.Option(help="The search method, one of the scenario's arms.")] = "qsr",
     target: Annotated[str | None, typer.Option(help="The class sought, the scenario's by default.")] = None,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of all random numbers.")] = 0,
+    seed: Seed = 0,
     trial: Annotated[
         int, typer.Option(min=0, help="Which trial of a comparison with this seed to replay.")
     ] = 0,
-    variant: Annotated[
-        str | None, typer.Option(help="Which objects are there; the first variant by default.")
-    ] = None,
-    camera: Annotated[str | None, typer.Option(help="A camera preset in place of the scenario's.")] = None,
-    knowledge: Annotated[str | None, typer.Option(help="A .qsr file in place of the scenario's.")] = None,
-    robot: Annotated[str | None, typer.Option(help="A robot preset in place of the scenario's.")] = None,
+    variant: Variant = None,
+    camera: CameraName = None,
+    knowledge: KnowledgeName = None,
+    robot: RobotName = None,
     output: Annotated[
         Path | None, typer.Option(help="Folder of the pictures, under runs/ by default.")
     ] = None,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from itertools import product
 
 import numpy as np
 import numpy.typing as npt
@@ -14,14 +13,13 @@ from qsrlang.errors import ValueRangeError
 from qsrlang.geometry.angles import TURN, wrap
 from qsrlang.language.syntax import Anywhere, Density, Mix, Normal, Uniform
 
-MAX_TERMS = 256
 _REACH_IN_DEVIATIONS = 8.0
 _NODES = 256
 
 
 @dataclass(frozen=True, slots=True)
 class Bump:
-    """One term of a density on the circle: a wrapped normal, or uniform on an arc of `width` about `mean` [rad]."""
+    """A density on the circle: a wrapped normal, or uniform on an arc of `width` about `mean` [rad]."""
 
     mean: float
     deviation: float
@@ -55,28 +53,17 @@ class Bump:
         return min(self.width, 2.0 * self.deviation or math.inf)
 
 
-def bumps(density: Density | None) -> tuple[tuple[float, Bump], ...]:
-    """Return a density as weighted terms; None says nothing, like `any`."""
+def bump(density: Density | None) -> Bump:
+    """Return a density on the circle; None says nothing, like `any`.
+
+    Raises ValueRangeError for a `mix`, whose parts are alternatives (`Relation.terms`).
+    """
     match density:
-        case None | Anywhere():
-            return ((1.0, Bump(0.0, 0.0, TURN)),)
         case Normal(mean=mean, deviation=deviation):
-            return ((1.0, Bump(mean.value, deviation.value, TURN)),)
+            return Bump(mean.value, deviation.value, TURN)
         case Uniform(low=low, high=high):
-            width = min(high.value - low.value, TURN)
-            return ((1.0, Bump(0.5 * (low.value + high.value), 0.0, width)),)
-        case Mix(parts=parts):
-            share = 1.0 / len(parts)
-            return tuple((share * weight, bump) for part in parts for weight, bump in bumps(part))
-
-
-def terms(densities: tuple[Density | None, ...]) -> list[tuple[float, tuple[Bump, ...]]]:
-    """Return a product of densities as a weighted sum of products of bumps, at most MAX_TERMS of them."""
-    sums = [bumps(density) for density in densities]
-    count = math.prod(map(len, sums))
-    if count > MAX_TERMS:
-        raise ValueRangeError("the number of terms in a product of mixtures", count, f"at most {MAX_TERMS}")
-    return [
-        (math.prod(weight for weight, _ in chosen), tuple(bump for _, bump in chosen))
-        for chosen in product(*sums)
-    ]
+            return Bump(0.5 * (low.value + high.value), 0.0, min(high.value - low.value, TURN))
+        case Mix():
+            raise ValueRangeError("an angle", "a mix", "one of its parts")
+        case Anywhere() | None:
+            return Bump(0.0, 0.0, TURN)

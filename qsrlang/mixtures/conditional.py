@@ -13,6 +13,7 @@ from qsrlang.geometry.angles import unit
 from qsrlang.geometry.polygon import ConvexPolygon
 from qsrlang.geometry.pose import Pose2
 from qsrlang.language.syntax import Fit, Frame
+from qsrlang.mixtures.angles import bump
 from qsrlang.mixtures.density import Boxes, PolarDensity, Stance, half_box
 from qsrlang.relations.graph import Constraint, Landmark, ObjectClass, RelationGraph
 
@@ -141,7 +142,7 @@ def polar_density(
     """Return the product of a constraint's atoms as one polar density, with the frame of each angle factor."""
     turning = [atom for atom in constraint.atoms if atom.relation.angle is not None]
     frames = tuple(atom.frame for atom in turning) or (Frame.RELATIVE,)
-    angles = tuple(atom.relation.angle for atom in turning) or (None,)
+    angles = tuple(bump(atom.relation.angle) for atom in turning) or (bump(None),)
     distances = tuple(a.relation.distance for a in constraint.atoms if a.relation.distance is not None)
     referent, relatum = (
         graph.classes[graph.class_of(name)] for name in (constraint.referent, constraint.relatum)

@@ -8,10 +8,10 @@ import numpy as np
 
 from qsrlang.arrays import BoolArray, FloatArray, IntArray
 from qsrlang.errors import NoRoomError
-from qsrlang.geometry.angles import unit, wrap
+from qsrlang.geometry.angles import unit
 from qsrlang.geometry.polygon import ConvexPolygon
 from qsrlang.language.syntax import Density, Dimension, Uniform
-from qsrlang.mixtures.angles import Bump, terms
+from qsrlang.mixtures.angles import Bump
 
 MIN_OVERLAP = 1e-12
 MIN_ROOM = 1e-3
@@ -63,7 +63,7 @@ class PolarDensity:
     MIN_ROOM of the angle has room, the boxes touch. NoRoomError where no stand has room.
     """
 
-    angles: tuple[Density | None, ...]
+    angles: tuple[Bump, ...]
     hands: tuple[float, ...]
     distances: tuple[Density, ...]
     boxes: Boxes
@@ -143,27 +143,16 @@ class PolarDensity:
         return support.ray_lengths(inside[:, None], unit(directions - yaw[:, None]), margins[:, None])
 
     def _nodes(self, stance: Stance) -> tuple[FloatArray, FloatArray]:
-        """Return directions (P, N) and their weights (P, N), the sum over terms of products of angle factors."""
-        directions, weights = [], []
-        for share, factors in terms(self.angles):
-            narrow = min(range(len(factors)), key=lambda j: factors[j].spread)
-            angles, angle_weights = factors[narrow].nodes()
-            theta = stance.axes[:, [narrow]] + self.hands[narrow] * angles
-            others = self._product(theta, stance, factors, skip=narrow)
-            directions.append(theta)
-            weights.append(share * angle_weights * others)
-        return np.concatenate(directions, axis=1), np.concatenate(weights, axis=1)
+        """Return directions (P, N), those of the narrowest factor, and the products of all factors there (P, N)."""
+        narrow = min(range(len(self.angles)), key=lambda j: self.angles[j].spread)
+        angles, weights = self.angles[narrow].nodes()
+        theta = stance.axes[:, [narrow]] + self.hands[narrow] * angles
+        return theta, weights * self._angle_pdf(theta, stance, skip=narrow)
 
-    def _angle_pdf(self, theta: FloatArray, stance: Stance) -> FloatArray:
-        return np.asarray(
-            sum(share * self._product(theta, stance, factors) for share, factors in terms(self.angles))
-        )
-
-    def _product(
-        self, theta: FloatArray, stance: Stance, factors: tuple[Bump, ...], skip: int | None = None
-    ) -> FloatArray:
+    def _angle_pdf(self, theta: FloatArray, stance: Stance, skip: int | None = None) -> FloatArray:
+        """Return the product (P, N) of the angle factors, but for one, at directions (P, N)."""
         product = np.ones_like(theta)
-        for j, factor in enumerate(factors):
+        for j, factor in enumerate(self.angles):
             if j != skip:
                 product = product * factor.pdf(self.hands[j] * (theta - stance.axes[:, [j]]))
         return product
@@ -203,7 +192,7 @@ class PolarDensity:
         waiting = np.arange(len(points))
         for _ in range(_REDRAWS):
             part = stance.at(waiting)
-            theta = part.axes + self.hands[0] * self._draw_angles(len(waiting), rng)[:, None]
+            theta = part.axes + self.hands[0] * self.angles[0].sample(len(waiting), rng)[:, None]
             low, high = (bound[:, 0] for bound in self.bounds(part, theta))
             free = high > low
             r = rng.uniform(low[free], high[free])
@@ -213,12 +202,6 @@ class PolarDensity:
                 return points
         points[waiting] = self._draw_by_inversion(stance.at(waiting), rng)
         return points
-
-    def _draw_angles(self, count: int, rng: np.random.Generator) -> FloatArray:
-        weighted = [(share, factors[0]) for share, factors in terms(self.angles)]
-        draws = np.stack([bump.sample(count, rng) for _, bump in weighted])
-        chosen = rng.choice(len(weighted), size=count, p=[share for share, _ in weighted])
-        return np.asarray(wrap(draws[chosen, np.arange(count)]))
 
     def _draw_by_inversion(self, stance: Stance, rng: np.random.Generator) -> FloatArray:
         chunks = [slice(at, at + _CHUNK) for at in range(0, len(stance.positions), _CHUNK)]

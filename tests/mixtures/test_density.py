@@ -8,6 +8,7 @@ import pytest
 import qsrlang as qsr
 from qsrlang.geometry.polygon import ConvexPolygon
 from qsrlang.geometry.pose import Pose2
+from qsrlang.mixtures.angles import bump
 from qsrlang.mixtures.density import Boxes, PolarDensity, Stance
 
 RELATIONS = """
@@ -22,9 +23,10 @@ CUP_BY_KEYBOARD = Boxes((0.04, 0.04), (0.075, 0.225))
 
 
 def density(*names, boxes=POINT, support=None, reach=0.75):
+    """The product of some relations, of a mix its last part."""
     relations = qsr.parse_knowledge(RELATIONS).graph.relations
-    chosen = [relations[name] for name in names]
-    angles = tuple(r.angle for r in chosen if r.angle) or (None,)
+    chosen = [relations[name].terms[-1][1] for name in names]
+    angles = tuple(bump(r.angle) for r in chosen if r.angle) or (bump(None),)
     distances = tuple(r.distance for r in chosen if r.distance)
     return PolarDensity(angles, (1.0,) * len(angles), distances, boxes, support, reach, " ∧ ".join(names))
 
