@@ -1,4 +1,4 @@
-"""From text to mixture to the value of a view: times in one run, each beside a limit or a plainer way.
+"""From knowledge to mixture to the value of a view: times in one run, each beside a limit or a plainer way.
 
 python benchmarks/bench_reasoning.py
 """
@@ -10,15 +10,11 @@ import time
 from collections.abc import Callable
 
 import numpy as np
-from lark import Lark
-
 import qsrlang as qsr
 from qsrlang.maps.occlusion import clear_rays
-from qsrlang.resources import resource_path
 
 MONITOR = "monitor-1 : Monitor at (0 m, 0 m) facing -90 deg ± (2 cm, 2 cm, 3 deg)"
 DESK = "desk-1 : Desk at (0 m, -0.2 m) facing -90 deg"
-STATEMENT = "observe 3 × left-of(Cup, Plate) ∧ close-to(Cup, Plate).\n"
 
 
 def seconds(work: Callable[[], object], repeats: int = 7) -> float:
@@ -33,26 +29,6 @@ def seconds(work: Callable[[], object], repeats: int = 7) -> float:
 
 def show(what: str, took: float, beside: str) -> None:
     print(f"{what:58s} {1e3 * took:10.2f} ms   {beside}")
-
-
-def language() -> None:
-    text = STATEMENT * 1500
-    bare = Lark(
-        resource_path("grammars", "qsr.lark").read_text(encoding="utf-8"),
-        parser="lalr",
-        lexer="contextual",
-        start="document",
-        propagate_positions=True,
-    )
-    limit = seconds(lambda: bare.parse(text), 3)
-    took = seconds(lambda: qsr.parse(text), 3)
-    size = len(text.encode()) / 1e3
-    show(
-        f"parse {size:.0f} KB to nodes",
-        took,
-        f"{size / took:.0f} KB/s, {took / limit:.1f} x bare lark to trees",
-    )
-    show("office/desk, text to relation graph", seconds(lambda: qsr.load("office/desk")), "")
 
 
 def inference() -> None:
@@ -88,6 +64,5 @@ def views() -> None:
 
 
 if __name__ == "__main__":
-    language()
     inference()
     views()

@@ -12,6 +12,7 @@
   + MissingFacingError        a landmark without a heading where a frame of reference needs one
   + NoRoomError               relations that leave no room on their support
   + TooManyWorldsError        knowledge with more combinations than the named limit
+  + UnansweredQueryError      a query that can be written but that this release does not answer
 """
 
 from __future__ import annotations
@@ -129,4 +130,15 @@ class TooManyWorldsError(QSRError):
         super().__init__(
             f"'{target}' depends on more than {limit} combinations of alternatives; "
             "name fewer alternatives or landmarks"
+        )
+
+
+class UnansweredQueryError(QSRError):
+    """A query that can be written but that this release does not answer: its verb, or its `given`."""
+
+    def __init__(self, verb: str) -> None:
+        self.verb = verb
+        super().__init__(
+            f"'{verb}' is not answered by this release; ask 'where', perhaps with 'wrt', 'in' and 'at', "
+            "as in 'where Cup wrt Keyboard in room kitchen at 09:30?'"
         )

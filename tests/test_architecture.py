@@ -12,7 +12,7 @@ PACKAGE = Path(qsrlang.__file__).parent
 # Low to high; names on one line are siblings and never import each other.
 LAYERS = [
     {"errors"},
-    {"arrays", "resources"},
+    {"arrays", "files", "resources"},
     {"language", "geometry"},
     {"relations", "maps"},
     {"mixtures"},
@@ -28,6 +28,10 @@ HOMES = {
     "matplotlib": {"plotting"},
     "dask": {"experiments"},
     "typer": {"cli"},
+    "prompt_toolkit": {"cli"},
+    "pygls": {"editor"},
+    "lsprotocol": {"editor"},
+    "pygments": {"editor", "cli"},
 }
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
 MODULES = sorted(path for path in PACKAGE.rglob("*.py") if path != PACKAGE / "__init__.py")

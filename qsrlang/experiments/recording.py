@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import csv
 import io
-import os
-import tempfile
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -13,6 +11,7 @@ from types import TracebackType
 
 from qsrlang.errors import FileError
 from qsrlang.experiments.trials import DECIMALS, Trial
+from qsrlang.files import write_whole
 
 MAX_BYTES = 200_000_000
 TRIAL_COLUMNS = ("arm", "trial", "found", "seconds", "poses", "travel", "object")
@@ -92,22 +91,9 @@ class Recording:
         text = _lines([HEADER, *(self._row(trial) for trial in trials)])
         try:
             self.path.parent.mkdir(parents=True, exist_ok=True)
-            write_whole(self.path, text)
         except OSError as error:
             raise _unwritable(self.path, error) from None
-
-
-def write_whole(path: Path, text: str) -> None:
-    """Write a file whole or not at all; raises OSError."""
-    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8", newline="") as file:
-            file.write(text)
-        Path(name).chmod(0o644)
-        Path(name).replace(path)
-    except BaseException:
-        Path(name).unlink(missing_ok=True)
-        raise
+        write_whole(self.path, text)
 
 
 def read_trials(path: Path, experiment: Experiment) -> tuple[Trial, ...]:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from enum import Enum
 
 from qsrlang.errors import QSRError
+from qsrlang.language.rendering import Mark, Row, rows
 from qsrlang.language.source import Span
 
 
@@ -18,39 +19,6 @@ class Severity(Enum):
     INFO = "info"
 
 
-CODES = {
-    "Q101": "unexpected text",
-    "Q102": "a formula nested too deeply",
-    "Q103": "too many alternatives in one formula",
-    "Q201": "unknown class or landmark",
-    "Q203": "unknown relation",
-    "Q204": "unknown scene",
-    "Q205": "class defined twice",
-    "Q206": "landmark defined twice",
-    "Q207": "relation defined twice",
-    "Q208": "scene defined twice",
-    "Q209": "a file that cannot be imported",
-    "Q210": "unknown default",
-    "Q211": "class not among the scene's arguments",
-    "Q212": "a newer language",
-    "Q301": "a missing unit",
-    "Q302": "a unit of the wrong kind",
-    "Q303": "a value out of range",
-    "Q304": "a wrong number of values",
-    "Q401": "shares above 1",
-    "Q402": "shares given for some alternatives only",
-    "Q403": "two beliefs on one pair",
-    "Q404": "a wrong number of arguments",
-    "Q405": "a negation without opposites",
-    "Q406": "an intrinsic frame without a front",
-    "Q407": "a relation of an object to itself",
-    "Q408": "a metric fit on several pairs",
-    "Q501": "dynamic class used as landmark",
-    "Q502": "class never declared",
-    "Q601": "a statement that another overrides",
-}
-
-
 @dataclass(frozen=True, slots=True)
 class Label:
     """A further place that belongs to a diagnostic, and what it is there."""
@@ -60,8 +28,20 @@ class Label:
 
 
 @dataclass(frozen=True, slots=True)
+class Edit:
+    """A change that mends a finding: put `text` in place of the characters of `span`."""
+
+    span: Span
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """One finding about a text: code, message, where, further places and what would help."""
+    """One finding about a text: code, message, where, further places, what would help, and the edits that do so.
+
+    The edits, if any, belong together: making all of them does what `help` says. `sure` tells whether they can only
+    be what was meant, so that they may be made without asking.
+    """
 
     code: str
     message: str
@@ -70,21 +50,22 @@ class Diagnostic:
     help: str = ""
     labels: tuple[Label, ...] = ()
     severity: Severity = Severity.ERROR
+    edits: tuple[Edit, ...] = ()
+    sure: bool = True
 
     @property
     def is_error(self) -> bool:
         """Whether the text cannot be used before this is mended."""
         return self.severity is Severity.ERROR
 
+    def rows(self) -> Iterator[Row]:
+        """Yield the rows of the finding as it is shown: head, file, line and column, the lines themselves, help."""
+        marks = [Mark(self.span, self.note, True), *(Mark(one.span, one.text, False) for one in self.labels)]
+        return rows(f"{self.severity.value}[{self.code}]: {self.message}", marks, self.help)
+
     def render(self) -> str:
-        """Return the finding with file, line, column, the line itself and a caret under the place."""
-        head = f"{self.severity.value}[{self.code}]: {self.message}"
-        further = (label for label in self.labels)
-        parts = [head, _excerpt(self.span, self.note, "-->")]
-        parts += [_excerpt(label.span, label.text, ":::") for label in further]
-        if self.help:
-            parts.append(f"   = help: {self.help}")
-        return "\n".join(parts)
+        """Return the finding with file, line, column, the lines themselves and marks under the places."""
+        return "\n".join(row.text for row in self.rows())
 
     def to_json(self) -> dict[str, object]:
         """Return the finding as plain data."""
@@ -94,40 +75,45 @@ class Diagnostic:
             "message": self.message,
             "note": self.note,
             "help": self.help,
-            "file": self.span.source.name,
-            "line": self.span.line,
-            "column": self.span.column,
-            "length": self.span.end - self.span.start,
-            "labels": [{"place": str(label.span), "text": label.text} for label in self.labels],
+            **_place(self.span),
+            "labels": [{**_place(label.span), "text": label.text} for label in self.labels],
+            "edits": [{**_place(edit.span), "text": edit.text} for edit in self.edits],
         }
+
+
+class Diagnostics(tuple[Diagnostic, ...]):
+    """Findings in order; printed, each is shown with its places."""
+
+    __slots__ = ()
+
+    @property
+    def errors(self) -> Diagnostics:
+        """Those that must be mended before the text can be used."""
+        return Diagnostics(finding for finding in self if finding.is_error)
+
+    def __str__(self) -> str:
+        return "\n\n".join(finding.render() for finding in self)
 
 
 class LanguageError(QSRError):
     """A text that cannot be used, with all that was found in it."""
 
     def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:
-        self.diagnostics = tuple(diagnostics)
-        super().__init__("\n\n".join(diagnostic.render() for diagnostic in self.diagnostics))
+        self.diagnostics = Diagnostics(diagnostics)
+        super().__init__(str(self.diagnostics))
 
 
 def raise_errors(diagnostics: Iterable[Diagnostic]) -> None:
     """Raise LanguageError with the errors among the diagnostics, if there are any."""
-    errors = [diagnostic for diagnostic in diagnostics if diagnostic.is_error]
+    errors = Diagnostics(diagnostics).errors
     if errors:
         raise LanguageError(errors)
 
 
-def _excerpt(span: Span, note: str, arrow: str) -> str:
-    line_text = span.source.line_text(span.line).expandtabs(1)
-    number = str(span.line)
-    gutter = " " * len(number)
-    width = max(1, min(span.end - span.start, len(line_text) - span.column + 1))
-    caret = " " * (span.column - 1) + "^" * width
-    return "\n".join(
-        [
-            f"{gutter} {arrow} {span}",
-            f"{gutter} |",
-            f"{number} | {line_text}",
-            f"{gutter} | {caret} {note}".rstrip(),
-        ]
-    )
+def _place(span: Span) -> dict[str, object]:
+    return {
+        "file": span.source.name,
+        "line": span.line,
+        "column": span.column,
+        "length": span.end - span.start,
+    }

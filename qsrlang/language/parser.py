@@ -3,64 +3,63 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
-from dataclasses import dataclass
-from functools import cache
+from dataclasses import dataclass, field, replace
+from threading import Lock
 from typing import Any
 
-from lark import Lark, TextSlice
-from lark.exceptions import UnexpectedCharacters, UnexpectedInput, UnexpectedToken, VisitError
+from lark.exceptions import UnexpectedInput
 
-from qsrlang.language.diagnostics import Diagnostic, raise_errors
-from qsrlang.language.quantities import Refused
+from qsrlang.language.characters import odd_characters
+from qsrlang.language.diagnostics import Diagnostic, Diagnostics, Edit, Label, raise_errors
+from qsrlang.language.grammar import reader
+from qsrlang.language.lexing import Excerpt, Word
+from qsrlang.language.questions import Query
 from qsrlang.language.source import Source, Span
-from qsrlang.language.syntax import Document, Landmark, Statement, Where
-from qsrlang.language.transformer import build
-from qsrlang.resources import resource_path
+from qsrlang.language.splitting import Kind, Piece, split
+from qsrlang.language.statements import (
+    Believe,
+    Context,
+    Document,
+    Landmark,
+    Observe,
+    ObserveScene,
+    Require,
+    Scene,
+    Statement,
+)
+from qsrlang.language.unexpected import QUERIES_ELSEWHERE, Rest, explain, rest_after_missing_stop
 
 LANGUAGE_VERSION = 1
 MAX_NESTING = 100
-_MAX_EXPECTED = 14
+MAX_FINDINGS = 10_000
+CONTEXTUAL = (Scene, Believe, Observe, ObserveScene, Require)
 
-_MARK = re.compile(r'"[^"\n]*"|#[^\n]*|\d+\.\d+|[().?]')
-_WORDS = {
-    "DOT": "'.'",
-    "QMARK": "'?'",
-    "COMMA": "','",
-    "LPAR": "'('",
-    "RPAR": "')'",
-    "LBRACE": "'{'",
-    "RBRACE": "'}'",
-    "COLON": "':'",
-    "COLONS": "'::'",
-    "VBAR": "'|'",
-    "TILDE": "'~'",
-    "PERCENT": "'%'",
-    "AND": "'∧'",
-    "OR": "'∨'",
-    "NOT": "'¬'",
-    "IFF": "'⇔'",
-    "TIMES": "'×'",
-    "PLUSMINUS": "'±'",
-    "NAME": "a name",
-    "NUMBER": "a number",
-    "INT": "a whole number",
-    "SIGN": "a sign",
-    "UNIT": "a unit",
-    "STRING": "a name in quotes",
-    "DECLARE": "'surface', 'static' or 'dynamic'",
-    "FRAME": "'relative', 'intrinsic' or 'absolute'",
-    "YESNO": "'yes' or 'no'",
-    "ON_KEY": "'on'",
-}
+_LOCK = Lock()
+_NAME = re.compile(r"[^\W\d]\w*(?:-\w+)*")
+_DEFINES = re.compile(r"(?:surface|static|dynamic|landmark|relation|scene)(?![\w-])")
 
 
 @dataclass(frozen=True, slots=True)
 class Parsed:
-    """A document with all that was found wrong in its text."""
+    """A document with all that was found wrong in its text, and the names that what was left out would define."""
 
     document: Document
-    diagnostics: tuple[Diagnostic, ...]
+    diagnostics: Diagnostics
+    lost: frozenset[str] = frozenset()
+
+
+@dataclass(slots=True)
+class _Reading:
+    """A document while it is being read; the open contexts stand with the statements read inside them."""
+
+    diagnostics: list[Diagnostic]
+    statements: list[Statement] = field(default_factory=list)
+    lost: set[str] = field(default_factory=set)
+    contexts: list[tuple[Context, list[Statement]]] = field(default_factory=list)
+
+    def report(self, code: str, message: str, span: Span, **more: Any) -> None:
+        """Add an error."""
+        self.diagnostics.append(Diagnostic(code, message, span, **more))
 
 
 def parse(text: str, name: str = "<text>") -> Parsed:
@@ -69,21 +68,25 @@ def parse(text: str, name: str = "<text>") -> Parsed:
 
 
 def parse_source(source: Source) -> Parsed:
-    """Parse a .qsr source; what cannot be read is left out and reported."""
-    statements: list[Statement] = []
-    diagnostics: list[Diagnostic] = []
-    for span, depth in _split(source):
-        try:
-            statements.append(_parse_span(source, span, depth, "statement"))
-        except Refused as refusal:
-            diagnostics.append(refusal.diagnostic)
-    return Parsed(Document(tuple(statements)), tuple(diagnostics))
+    """Parse a .qsr source; what cannot be read is left out and reported, up to MAX_FINDINGS of it."""
+    reading = _Reading(list(odd_characters(source)))
+    for piece in split(source):
+        _take(piece, reading)
+        if len(reading.diagnostics) >= MAX_FINDINGS:
+            message = f"{MAX_FINDINGS} findings; the text after this place is not read"
+            reading.diagnostics.append(Diagnostic("Q107", message, piece.span))
+            break
+    while reading.contexts:
+        _report_open(source, reading)
+    return Parsed(
+        Document(tuple(reading.statements)), Diagnostics(reading.diagnostics), frozenset(reading.lost)
+    )
 
 
-def parse_query(text: str) -> Where:
+def parse_query(text: str) -> Query:
     """Parse one query, such as `where Cup?`; the question mark may be left out."""
     closed = text if text.rstrip().endswith("?") else text.rstrip() + "?"
-    query: Where = _parse_alone(closed, "query", "<query>")
+    query: Query = _parse_alone(closed, "query", "<query>")
     return query
 
 
@@ -101,99 +104,129 @@ def parse_place(text: str) -> tuple[float, float]:
 
 def _parse_alone(text: str, rule: str, name: str) -> Any:
     source = Source(name, text)
-    try:
-        return _parse_span(source, Span(source, 0, len(text)), text.count("("), rule)
-    except Refused as refusal:
-        raise_errors([refusal.diagnostic])
+    result = _parse_span(Span(source, 0, len(text)), text.count("("), rule)
+    raise_errors(result.findings)
+    return result.node
 
 
-@cache
-def _grammar() -> Lark:
-    return Lark(
-        resource_path("grammars", "qsr.lark").read_text(encoding="utf-8"),
-        parser="lalr",
-        lexer="contextual",
-        start=["statement", "query", "landmark_body"],
-        propagate_positions=True,
-        maybe_placeholders=False,
+def _take(piece: Piece, reading: _Reading) -> None:
+    if piece.kind is Kind.CONTEXT_END:
+        _close_context(piece.span, reading)
+        return
+    if piece.span.start == piece.span.end:
+        reading.report("Q101", f"unexpected '{piece.end}'", _after(piece.span))
+        return
+    result = _parse_span(piece.span, piece.depth, piece.kind.value)
+    if result.rest is not None:
+        before = Span(piece.span.source, piece.span.start, result.rest.before)
+        _take(replace(piece, span=before, end=""), reading)
+        _take(replace(piece, span=Span(before.source, result.rest.start, piece.span.end)), reading)
+        return
+    reading.diagnostics.extend(result.findings)
+    if result.findings:
+        names = _NAME.findall(piece.span.text) if _DEFINES.match(piece.span.text) else ()
+        reading.lost.update(names)
+    if piece.kind is Kind.CONTEXT_HEAD:
+        _open_context(result.node or Context(piece.span, (), ()), piece, reading)
+    elif not result.findings:
+        _check_end(piece, reading)
+        _add(result.node, piece.doc, reading)
+
+
+def _check_end(piece: Piece, reading: _Reading) -> None:
+    place = _after(piece.span)
+    if piece.end == "":
+        edits = (Edit(Span(place.source, place.start, place.start), "."),)
+        reading.report("Q104", "a statement ends with '.'", place, help="add a full stop", edits=edits)
+    elif piece.end == "?":
+        reading.report("Q101", "unexpected '?'", place, help=QUERIES_ELSEWHERE)
+
+
+def _add(statement: Statement, doc: str, reading: _Reading) -> None:
+    documented = replace(statement, doc=doc) if doc else statement
+    if not reading.contexts:
+        reading.statements.append(documented)
+        return
+    head, inside = reading.contexts[-1]
+    if isinstance(statement, CONTEXTUAL):
+        inside.append(documented)
+    else:
+        labels = (Label(head.span, "the context begins here"),)
+        note = "only scene, believe, observe and require can"
+        reading.report(
+            "Q106", "this statement cannot stand in a context", statement.span, note=note, labels=labels
+        )
+
+
+def _open_context(head: Context, piece: Piece, reading: _Reading) -> None:
+    if reading.contexts:
+        labels = (Label(reading.contexts[-1][0].span, "inside this one"),)
+        help_text = "write all conditions in one head, with commas between"
+        reading.report("Q106", "contexts do not nest", head.span, help=help_text, labels=labels)
+    reading.contexts.append((replace(head, doc=piece.doc), []))
+
+
+def _close_context(span: Span, reading: _Reading) -> None:
+    if not reading.contexts:
+        reading.report("Q101", "unexpected '}'", span, note="nothing is open here")
+        return
+    head, inside = reading.contexts.pop()
+    whole = Span(span.source, head.span.start, span.end)
+    reading.statements.append(replace(head, span=whole, statements=tuple(inside)))
+
+
+def _report_open(source: Source, reading: _Reading) -> None:
+    head, _ = reading.contexts[-1]
+    end = Span(source, len(source.text), len(source.text))
+    reading.report(
+        "Q105",
+        "this context is not closed",
+        head.span,
+        help="add a '}' where it ends",
+        edits=(Edit(end, "}\n"),),
     )
+    _close_context(end, reading)
 
 
-def _split(source: Source) -> Iterator[tuple[Span, int]]:
-    """Yield each statement's place and how deep its parentheses nest."""
-    start = depth = deepest = 0
-    for mark in _MARK.finditer(source.text):
-        word = mark.group()
-        if word == "(":
-            depth += 1
-            deepest = max(deepest, depth)
-        elif word == ")":
-            depth -= 1
-        elif word in ".?":
-            yield _trimmed(source, start, mark.end()), deepest
-            start, depth, deepest = mark.end(), 0, 0
-    rest = _trimmed(source, start, len(source.text))
-    if rest.start < rest.end:
-        yield rest, deepest
+def _after(span: Span) -> Span:
+    """Return the place just after a span: its full stop, or where that belongs."""
+    return Span(span.source, span.end, span.end + 1)
 
 
-_BLANK = re.compile(r"(?:\s+|#[^\n]*)*")
+@dataclass(frozen=True, slots=True)
+class _Result:
+    node: Any
+    findings: tuple[Diagnostic, ...] = ()
+    rest: Rest | None = None
 
 
-def _trimmed(source: Source, start: int, end: int) -> Span:
-    blank = _BLANK.match(source.text, start, end)
-    return Span(source, blank.end() if blank else start, end)
-
-
-def _parse_span(source: Source, span: Span, depth: int, rule: str) -> Any:
+def _parse_span(span: Span, depth: int, rule: str) -> _Result:
+    """Parse part of a source by a start rule; None where it cannot be read."""
     if depth > MAX_NESTING:
         message = f"parentheses nest {depth} deep"
-        raise Refused(Diagnostic("Q102", message, span, f"at most {MAX_NESTING} are read"))
-    try:
-        tree = _grammar().parse(TextSlice(source.text, span.start, span.end), start=rule)
-        return build(tree, source)
-    except UnexpectedInput as error:
-        raise Refused(_explain(source, span, error)) from error
-    except VisitError as error:
-        if isinstance(error.orig_exc, Refused):
-            raise error.orig_exc from error
-        raise
+        return _Result(None, (Diagnostic("Q102", message, span, f"at most {MAX_NESTING} are read"),))
+    with _LOCK:
+        lark, builder = reader()
+        builder.start(span.source)
+        try:
+            node = lark.parse(Excerpt.of(span), start=rule)
+        except UnexpectedInput as error:
+            rest = rest_after_missing_stop(error, span) if rule == "statement" else None
+            return _Result(None, () if rest else (explain(error, span),), rest)
+        return _Result(node, tuple(builder.findings))
 
 
-def _explain(source: Source, span: Span, error: UnexpectedInput) -> Diagnostic:
-    if isinstance(error, UnexpectedCharacters):
-        start, length, expected = error.pos_in_stream or span.start, 1, set(error.allowed or ())
-        found = f"'{source.text[start]}'"
-    elif isinstance(error, UnexpectedToken) and error.token.type != "$END":
-        start, length, expected = (
-            error.token.start_pos or span.start,
-            len(error.token),
-            set(error.accepts or ()),
-        )
-        found = f"'{error.token}'"
-    else:
-        start, length = _last_character(span), 1
-        found, expected = "the end of the text", set(getattr(error, "accepts", None) or ())
-    place = Span(source, start, min(start + length, max(span.end, start + 1)))
-    words = sorted({_WORDS.get(name, f"'{name.lower()}'") for name in expected - {"$END"}})
-    note = f"expected {', '.join(words)}" if 0 < len(words) <= _MAX_EXPECTED else ""
-    return Diagnostic("Q101", f"unexpected {found}", place, note, _remedy(found, expected))
-
-
-_WORD = re.compile(r'"[^"\n]*"|#[^\n]*|\S')
-
-
-def _last_character(span: Span) -> int:
-    """Return the place of a span's last character that is no blank and no comment."""
-    words = _WORD.finditer(span.source.text, span.start, span.end)
-    return max((word.end() - 1 for word in words if not word.group().startswith("#")), default=span.start)
-
-
-def _remedy(found: str, expected: set[str]) -> str:
-    if found in ("'?'", "'where'"):
-        return (
-            "a file states what is known and ends statements with '.'; ask queries with 'qsr ask FILE QUERY'"
-        )
-    if "DOT" in expected:
-        return "a statement ends with '.'"
-    return ""
+def words_of(span: Span, depth: int, rule: str) -> tuple[Word, ...] | None:
+    """Return the words of what a start rule reads, each with its kind; None where it cannot be read."""
+    if depth > MAX_NESTING:
+        return None
+    with _LOCK:
+        lark, builder = reader()
+        builder.start(span.source)
+        try:
+            reading = lark.parse_interactive(Excerpt.of(span), start=rule)
+            words = tuple(word for word in reading.iter_parse() if isinstance(word, Word))
+            reading.feed_eof()  # type: ignore[no-untyped-call]
+        except UnexpectedInput:
+            return None
+    return words

@@ -1,113 +1,93 @@
-"""From parse trees to nodes: the definition of a relation, its densities on the circle and along the way."""
+"""From rules to nodes: the definition of a relation, its densities on the circle and along the way."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from lark import Token
-from lark.visitors import Transformer_NonRecursive, v_args
-
 from qsrlang.language import syntax as s
-from qsrlang.language.diagnostics import Diagnostic
-from qsrlang.language.quantities import Refused, expect
-from qsrlang.language.source import Source, Span
+from qsrlang.language.builder import ANGLE, LENGTH, Builder, Field, nodes_of
+from qsrlang.language.statements import Relation
 
-LENGTH, ANGLE, FRACTION = s.Dimension.LENGTH, s.Dimension.ANGLE, s.Dimension.FRACTION
+FRACTION = s.Dimension.FRACTION
 
 
-@v_args(meta=True)
-class RelationNodes(Transformer_NonRecursive[Token, Any]):
-    """Builds the nodes of relation definitions of one source; raises Refused for values that make no sense."""
+class RelationNodes(Builder):
+    """Builds the definitions of relations."""
 
-    def __init__(self, source: Source) -> None:
-        super().__init__()
-        self._source = source
-
-    def _span(self, meta: Any) -> Span:
-        return Span(self._source, meta.start_pos, meta.end_pos)
-
-    def relation(self, meta: Any, children: list[Any]) -> s.Relation:
+    def relation(self, children: list[Any]) -> Relation:
         """`relation left-of(referent, relatum) { angle: …, distance: … }`"""
-        names = [child for child in children if isinstance(child, s.Name)]
-        fields = [child for child in children if isinstance(child, tuple)]
-        return s.Relation(self._span(meta), names[0], tuple(names[1:]), **self._once(fields, "field"))
+        name, *parameters = self.names_of(children)
+        return Relation(self.span(children), name, tuple(parameters), **self.fields(children, "field"))
 
-    def angle(self, meta: Any, children: list[Any]) -> tuple[str, Span, object]:
+    def angle(self, children: list[Any]) -> Field:
         """`angle: normal(90 deg, 11.25 deg)`"""
-        _check_density(children[1], "an angle", (ANGLE,))
-        return "angle", self._span(meta), children[1]
+        self._check_density(children[2], "an angle", ANGLE)
+        return Field(self.span(children), "angle", children[2])
 
-    def distance(self, meta: Any, children: list[Any]) -> tuple[str, Span, object]:
+    def distance(self, children: list[Any]) -> Field:
         """`distance: uniform(0 %, 50 %)`"""
-        density = children[1]
-        if not isinstance(density, s.Uniform | s.Anywhere):
+        density = children[2]
+        if isinstance(density, s.Uniform | s.Anywhere):
+            self._check_density(density, "a distance", LENGTH, FRACTION)
+            self._check_bounds(density)
+        else:
             help_text = "write 'distance: uniform(0 %, 50 %)', 'uniform(0 cm, 30 cm)' or 'any'"
-            raise Refused(
-                Diagnostic("Q302", "a distance is uniform between two bounds", density.span, help=help_text)
-            )
-        _check_density(density, "a distance", (LENGTH, FRACTION))
-        _check_distance(density)
-        return "distance", self._span(meta), density
+            self.refuse("Q302", "a distance is uniform between two bounds", density.span, help_text=help_text)
+        return Field(self.span(children), "distance", density)
 
-    def converse(self, meta: Any, children: list[Any]) -> tuple[str, Span, object]:
+    def region(self, children: list[Any]) -> Field:
+        """`region: top`"""
+        return Field(self.span(children), "region", children[2].value)
+
+    def converse(self, children: list[Any]) -> Field:
         """`converse: right-of`"""
-        return "converse", self._span(meta), children[1]
+        return Field(self.span(children), "converse", self.name_of(children[2]))
 
-    def disjoint(self, meta: Any, children: list[Any]) -> tuple[str, Span, object]:
+    def disjoint(self, children: list[Any]) -> Field:
         """`disjoint: (right-of, behind-of)`"""
-        return "disjoint", self._span(meta), tuple(children[1:])
+        return Field(self.span(children), "disjoint", self.names_of(children))
 
-    def symmetric(self, meta: Any, children: list[Any]) -> tuple[str, Span, object]:
+    def symmetric(self, children: list[Any]) -> Field:
         """`symmetric: yes`"""
-        return "symmetric", self._span(meta), children[1] == "yes"
+        return Field(self.span(children), "symmetric", children[2] == "yes")
 
-    def normal(self, meta: Any, children: list[Any]) -> s.Normal:
+    def normal(self, children: list[Any]) -> s.Normal:
         """`normal(mean, deviation)`"""
-        if children[2].value <= 0.0:
-            raise Refused(Diagnostic("Q303", "a deviation must be positive", children[2].span))
-        return s.Normal(self._span(meta), children[1], children[2])
+        _, mean, deviation = children[0], *nodes_of(children, s.Quantity)
+        if deviation.value <= 0.0:
+            self.refuse("Q303", "a deviation must be positive", deviation.span)
+        return s.Normal(self.span(children), mean, deviation)
 
-    def uniform(self, meta: Any, children: list[Any]) -> s.Uniform:
+    def uniform(self, children: list[Any]) -> s.Uniform:
         """`uniform(from, to)`"""
-        if not children[1].value < children[2].value:
-            raise Refused(Diagnostic("Q303", "the bounds of 'uniform' must rise", self._span(meta)))
-        return s.Uniform(self._span(meta), children[1], children[2])
+        low, high = nodes_of(children, s.Quantity)
+        span = self.span(children)
+        if low.dimension is high.dimension and not low.value < high.value:
+            self.refuse("Q303", "the bounds of 'uniform' must rise", span)
+        return s.Uniform(span, low, high)
 
-    def mix(self, meta: Any, children: list[Any]) -> s.Mix:
+    def mix(self, children: list[Any]) -> s.Mix:
         """`mix(density, density)`, each with the same share."""
-        return s.Mix(self._span(meta), tuple(children[1:]))
+        return s.Mix(self.span(children), tuple(children[2:-1:2]))
 
-    def any(self, meta: Any, children: list[Any]) -> s.Anywhere:
+    def any(self, children: list[Any]) -> s.Anywhere:
         """`any`"""
-        return s.Anywhere(self._span(meta))
+        return s.Anywhere(self.span(children))
 
-    def _once(self, fields: list[tuple[str, Span, object]], what: str) -> dict[str, Any]:
-        found: dict[str, Any] = {}
-        for key, span, value in fields:
-            if key in found:
-                raise Refused(Diagnostic("Q303", f"the {what} '{key}' is given twice", span))
-            found[key] = value
-        return found
+    def _check_density(self, density: s.Density, what: str, *allowed: s.Dimension) -> None:
+        match density:
+            case s.Normal(mean=first, deviation=second) | s.Uniform(low=first, high=second):
+                self.expect(first, what, *allowed)
+                self.expect(second, what, *allowed)
+            case s.Mix(parts=parts):
+                for part in parts:
+                    self._check_density(part, what, *allowed)
 
-
-def _check_density(density: s.Density, what: str, allowed: tuple[s.Dimension, ...]) -> None:
-    match density:
-        case s.Normal(mean=first, deviation=second) | s.Uniform(low=first, high=second):
-            expect(first, what, *allowed)
-            expect(second, what, *allowed)
-        case s.Mix(parts=parts):
-            for part in parts:
-                _check_density(part, what, allowed)
-
-
-def _check_distance(density: s.Density) -> None:
-    if not isinstance(density, s.Uniform):
-        return
-    low, high = density.low, density.high
-    if low.dimension is not high.dimension:
-        raise Refused(Diagnostic("Q302", "both bounds must be lengths, or both percentages", density.span))
-    top = 1.0 if low.dimension is FRACTION else float("inf")
-    if low.value < 0.0 or high.value > top:
-        raise Refused(
-            Diagnostic("Q303", "a distance lies from 0 to 100 % of the way, or from 0 m", density.span)
-        )
+    def _check_bounds(self, density: s.Density) -> None:
+        if not isinstance(density, s.Uniform):
+            return
+        low, high = density.low, density.high
+        if {low.dimension, high.dimension} == {LENGTH, FRACTION}:
+            self.refuse("Q302", "both bounds must be lengths, or both percentages", density.span)
+        elif low.value < 0.0 or (low.dimension is FRACTION and high.value > 1.0):
+            self.refuse("Q303", "a distance lies from 0 to 100 % of the way, or from 0 m", density.span)

@@ -75,9 +75,15 @@ def read_source(path: Path, name: str | None = None) -> Source:
             content = file.read(MAX_SOURCE_BYTES + 1)
     except OSError as error:
         raise FileError(path, error.strerror or "cannot be read", remedy) from error
+    return decode_source(content, name or str(path), path)
+
+
+def decode_source(content: bytes, name: str, path: Path | None = None) -> Source:
+    """Return the source that bytes of UTF-8 hold; raises FileError where they are too many or no text."""
+    shown = path or name
     if len(content) > MAX_SOURCE_BYTES:
-        raise FileError(path, f"is larger than {MAX_SOURCE_BYTES} bytes", "split it into several files")
+        raise FileError(shown, f"is larger than {MAX_SOURCE_BYTES} bytes", "split it into several files")
     try:
-        return Source(name or str(path), content.decode("utf-8-sig"), path)
+        return Source(name, content.decode("utf-8-sig"), path)
     except UnicodeDecodeError as error:
-        raise FileError(path, f"is not UTF-8 text (byte {error.start})", "save it as UTF-8") from error
+        raise FileError(shown, f"is not UTF-8 text (byte {error.start})", "save it as UTF-8") from error

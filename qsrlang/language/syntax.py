@@ -1,10 +1,11 @@
-"""The nodes of a Document: frozen values in SI units, each with the place it was written at.
+"""The words of the language as nodes: names, quantities, densities and formulas; frozen, in SI units, with places.
 
 Places do not take part in comparison, so two texts that mean the same are equal.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from enum import Enum
 from typing import TypeAlias
@@ -48,6 +49,25 @@ class Name(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class Role(Node):
+    """One of several instances of a class: `left: Cup`; within its scene, `left` alone means it too."""
+
+    role: Name
+    kind: Name
+
+    @property
+    def text(self) -> str:
+        """How the instance is named in answers."""
+        return f"{self.role.text}: {self.kind.text}"
+
+    def __str__(self) -> str:
+        return self.text
+
+
+Argument: TypeAlias = Name | Role
+
+
+@dataclass(frozen=True, slots=True)
 class Quantity(Node):
     """A value in metres, radians, seconds, as a fraction or as a bare number."""
 
@@ -88,11 +108,12 @@ Density: TypeAlias = Normal | Uniform | Mix | Anywhere
 
 @dataclass(frozen=True, slots=True)
 class Atom(Node):
-    """`relation(referent, relatum) wrt frame`."""
+    """`relation(referent, relatum) wrt frame`; `framed` tells whether the frame was written."""
 
     relation: Name
-    arguments: tuple[Name, ...]
+    arguments: tuple[Argument, ...]
     frame: Frame = Frame.RELATIVE
+    framed: bool = field(default=False, compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,6 +140,19 @@ class Not(Node):
 Formula: TypeAlias = Atom | And | Or | Not
 
 
+def atoms_of(formula: Formula) -> Iterator[Atom]:
+    """Yield the atoms of a formula in the order they were written."""
+    waiting: list[Formula] = [formula]
+    while waiting:
+        match waiting.pop():
+            case Atom() as atom:
+                yield atom
+            case Not(part=part):
+                waiting.append(part)
+            case And(parts=parts) | Or(parts=parts):
+                waiting.extend(reversed(parts))
+
+
 @dataclass(frozen=True, slots=True)
 class Fit(Node):
     """A metric fit in the atom's frame: mean (x, y) [m], deviation (x, y) [m], correlation."""
@@ -126,138 +160,3 @@ class Fit(Node):
     mean: tuple[float, float]
     deviation: tuple[float, float]
     correlation: float
-
-
-@dataclass(frozen=True, slots=True)
-class Language(Node):
-    """The version of the language a file is written in."""
-
-    version: int
-
-
-@dataclass(frozen=True, slots=True)
-class Import(Node):
-    """Take over the definitions of another file."""
-
-    target: str
-
-
-@dataclass(frozen=True, slots=True)
-class DeclaredClass(Node):
-    """One class of a declaration: size (width, depth[, height]) [m], height of its surface [m], front, support."""
-
-    name: Name
-    size: tuple[float, ...] | None = None
-    height: float | None = None
-    front: bool = False
-    on: Name | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Declaration(Node):
-    """`surface`, `static` or `dynamic` classes."""
-
-    kind: str
-    classes: tuple[DeclaredClass, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Landmark(Node):
-    """A named instance at (x, y[, z]) [m], the heading of its front [rad], and deviations (x, y[, heading])."""
-
-    name: Name
-    kind: Name
-    position: tuple[float, ...]
-    facing: float | None = None
-    deviation: tuple[float, ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
-class Scene(Node):
-    """Relations that hold together among the named classes."""
-
-    name: Name | None
-    classes: tuple[Name, ...]
-    formula: Formula
-
-
-@dataclass(frozen=True, slots=True)
-class Alternative(Node):
-    """One alternative of a belief; share is None where it is left out."""
-
-    share: float | None
-    formula: Formula
-    fit: Fit | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Believe(Node):
-    """Exclusive alternatives with shares."""
-
-    alternatives: tuple[Alternative, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Observe(Node):
-    """A formula that was seen `count` times, perhaps with a metric fit."""
-
-    count: float
-    formula: Formula
-    fit: Fit | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class ObserveScene(Node):
-    """A named scene that was seen `count` times."""
-
-    count: float
-    scene: Name
-
-
-@dataclass(frozen=True, slots=True)
-class Relation(Node):
-    """The definition of a relation."""
-
-    name: Name
-    parameters: tuple[Name, ...]
-    angle: Density | None = None
-    distance: Density | None = None
-    converse: Name | None = None
-    disjoint: tuple[Name, ...] = ()
-    symmetric: bool = False
-
-
-@dataclass(frozen=True, slots=True)
-class Defaults(Node):
-    """Named numbers that hold where nothing else is said."""
-
-    values: tuple[tuple[Name, Quantity], ...]
-
-
-Statement: TypeAlias = (
-    Language
-    | Import
-    | Declaration
-    | Landmark
-    | Scene
-    | Believe
-    | Observe
-    | ObserveScene
-    | Relation
-    | Defaults
-)
-
-
-@dataclass(frozen=True, slots=True)
-class Document:
-    """The statements of one text, in order."""
-
-    statements: tuple[Statement, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Where(Node):
-    """`where target?`, or relative to a class: `where target wrt relatum?`."""
-
-    target: Name
-    relatum: Name | None = None

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
 
 from qsrlang.arrays import FloatArray
-from qsrlang.errors import MissingFacingError
 from qsrlang.geometry.angles import unit
-from qsrlang.geometry.polygon import ConvexPolygon
-from qsrlang.geometry.pose import Pose2
 from qsrlang.language.syntax import Fit, Frame
 from qsrlang.mixtures.angles import bump
-from qsrlang.mixtures.density import Boxes, PolarDensity, Stance, half_box
-from qsrlang.relations.graph import Constraint, Landmark, ObjectClass, RelationGraph
+from qsrlang.mixtures.density import PolarDensity
+from qsrlang.mixtures.stance import Boxes, Stance, half_box
+from qsrlang.mixtures.standpoint import Standpoint
+from qsrlang.mixtures.supports import Support
+from qsrlang.relations.graph import AtomicRelation, Constraint, RelationGraph
 
 
 class Conditional(Protocol):
@@ -29,40 +29,6 @@ class Conditional(Protocol):
 
     def pdf(self, points: FloatArray, states: FloatArray) -> FloatArray:
         """Return the density (P,) of one point (P, 2) per state [1/m^2]."""
-
-
-@dataclass(frozen=True, slots=True)
-class Standpoint:
-    """Where axes and boxes come from: blocks of relatum, root landmark and support in the state, and the viewer."""
-
-    relatum: slice
-    root: slice
-    support: slice | None
-    own_heading: bool
-    root_has_heading: bool
-    root_name: str
-    viewer: Pose2 | None
-
-    def axes(self, states: FloatArray, frame: Frame) -> FloatArray:
-        """Return the reference axis (P,) of a frame [rad]: away from the viewer; along +y where it is absolute."""
-        if frame is Frame.ABSOLUTE:
-            return np.full(len(states), 0.5 * np.pi)
-        if frame is Frame.INTRINSIC and self.own_heading:
-            return states[:, self.relatum][:, 2] + np.pi
-        if frame is Frame.RELATIVE and self.viewer is not None:
-            sight = states[:, self.relatum][:, :2] - self.viewer.position
-            return np.asarray(np.arctan2(sight[:, 1], sight[:, 0]))
-        if not self.root_has_heading:
-            raise MissingFacingError(self.root_name, f"the {frame.value} frame (no viewer is given)")
-        return states[:, self.root][:, 2] + np.pi
-
-    def box_yaws(self, states: FloatArray) -> FloatArray:
-        """Return the heading (P,) of the boxes: the relatum's own, else the root's, else towards the viewer."""
-        if self.own_heading:
-            return states[:, self.relatum][:, 2]
-        if self.root_has_heading:
-            return states[:, self.root][:, 2]
-        return self.axes(states, Frame.RELATIVE) + np.pi
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,10 +52,11 @@ class PolarConditional:
         return self.density.pdf(points, self._stance(states))
 
     def _stance(self, states: FloatArray) -> Stance:
-        axes = np.stack([self.standpoint.axes(states, frame) for frame in self.frames], axis=-1)
-        support = None if self.standpoint.support is None else states[:, self.standpoint.support]
+        stand = self.standpoint
+        axes = np.stack([stand.axes(states, frame) for frame in self.frames], axis=-1)
+        support = None if stand.support is None else stand.support.poses(states)
         return Stance(
-            states[:, self.standpoint.relatum][:, :2], self.standpoint.box_yaws(states), axes, support
+            stand.relatum.positions(states), stand.box_yaws(states), axes, support, stand.ends(states)
         )
 
 
@@ -104,7 +71,7 @@ class FitConditional:
     def moments(self, states: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return mean (P, 2) and covariance (P, 2, 2) of x."""
         basis = self._basis(states)
-        positions = states[:, self.standpoint.relatum][:, :2]
+        positions = self.standpoint.relatum.positions(states)
         return positions + basis @ np.array(self.fit.mean), basis @ self._covariance() @ basis.transpose(
             0, 2, 1
         )
@@ -131,52 +98,74 @@ class FitConditional:
         return np.array([[sx * sx, rho * sx * sy], [rho * sx * sy, sy * sy]])
 
 
+@dataclass(frozen=True, slots=True)
+class EitherConditional:
+    """p(x | state) = (p_1(x | state) + p_2(x | state)) / 2; its moments are those of the whole, as one Gaussian."""
+
+    first: Conditional
+    second: Conditional
+
+    def moments(self, states: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return mean (P, 2) and covariance (P, 2, 2) of x: E Q + Cov m (law of total variance)."""
+        (m1, q1), (m2, q2) = self.first.moments(states), self.second.moments(states)
+        half = 0.5 * (m1 - m2)
+        return 0.5 * (m1 + m2), 0.5 * (q1 + q2) + half[:, :, None] * half[:, None, :]
+
+    def sample(self, states: FloatArray, rng: np.random.Generator) -> FloatArray:
+        """Return one draw (P, 2) from each state."""
+        draws = np.empty((len(states), 2))
+        heads = rng.random(len(states)) < 0.5
+        draws[heads] = self.first.sample(states[heads], rng)
+        draws[~heads] = self.second.sample(states[~heads], rng)
+        return draws
+
+    def pdf(self, points: FloatArray, states: FloatArray) -> FloatArray:
+        """Return the density (P,) of one point (P, 2) per state [1/m^2]."""
+        return 0.5 * (self.first.pdf(points, states) + self.second.pdf(points, states))
+
+
+def frame_of(constraint: Constraint, atom: AtomicRelation) -> Frame:
+    """Return the frame of an atom; between two relata there is only the one that runs from relatum to relatum."""
+    return atom.frame if constraint.towards is None else Frame.RELATIVE
+
+
 def hand(frame: Frame) -> float:
     """Return +1 where a frame's angles grow counter-clockwise, -1 where its left is the object's own left."""
     return -1.0 if frame is Frame.INTRINSIC else 1.0
 
 
+def polar_conditional(
+    graph: RelationGraph, constraint: Constraint, standpoint: Standpoint, support: Support | None
+) -> Conditional:
+    """Return the product of a constraint's atoms as one polar density.
+
+    A symmetric relation to two relata is the equal mixture of how it is seen from the one and from the other.
+    """
+    seen = PolarConditional(*polar_density(graph, constraint, support), standpoint)
+    if constraint.towards is None or not constraint.atoms[0].relation.symmetric:
+        return seen
+    turned = replace(constraint, relatum=constraint.towards, towards=constraint.relatum)
+    return EitherConditional(
+        seen, PolarConditional(*polar_density(graph, turned, support), standpoint.turned())
+    )
+
+
 def polar_density(
-    graph: RelationGraph, constraint: Constraint, support: Landmark | None
+    graph: RelationGraph, constraint: Constraint, support: Support | None
 ) -> tuple[PolarDensity, tuple[Frame, ...]]:
     """Return the product of a constraint's atoms as one polar density, with the frame of each angle factor."""
     turning = [atom for atom in constraint.atoms if atom.relation.angle is not None]
-    frames = tuple(atom.frame for atom in turning) or (Frame.RELATIVE,)
+    frames = tuple(frame_of(constraint, atom) for atom in turning) or (Frame.RELATIVE,)
     angles = tuple(bump(atom.relation.angle) for atom in turning) or (bump(None),)
     distances = tuple(a.relation.distance for a in constraint.atoms if a.relation.distance is not None)
-    referent, relatum = (
-        graph.classes[graph.class_of(name)] for name in (constraint.referent, constraint.relatum)
-    )
-    on_relatum = support is not None and constraint.relatum in (support.name, support.kind)
-    boxes = Boxes(
-        half_box(referent.width, referent.depth), half_box(relatum.width, relatum.depth), on_relatum
-    )
-    outline = None if support is None else outline_of(graph.classes[support.kind])
+    outline = None if support is None else support.outline
     hands = tuple(hand(frame) for frame in frames)
-    what = constraint.statement.text
+    boxes, what = _boxes(graph, constraint, support), constraint.statement.text
     return PolarDensity(angles, hands, distances, boxes, outline, graph.reach, what), frames
 
 
-def outline_of(surface: ObjectClass) -> ConvexPolygon:
-    """Return the outline of a surface in its own frame."""
-    return ConvexPolygon.rectangle(Pose2(0.0, 0.0), surface.depth, surface.width)
-
-
-def support_of(graph: RelationGraph, constraint: Constraint, root: Landmark) -> Landmark | None:
-    """Return the surface that carries the referent: of the class it stands `on`, under the root landmark."""
-    classes = [graph.classes[graph.class_of(name)] for name in (constraint.referent, constraint.relatum)]
-    wanted = classes[0].on or classes[1].on
-    if wanted is None or graph.classes[wanted].width == 0.0:
-        return None
-    for landmark in graph.instances_of(wanted):
-        if landmark.name == root.name or _carries(graph, landmark, root):
-            return landmark
-    return None
-
-
-def _carries(graph: RelationGraph, surface: Landmark, root: Landmark) -> bool:
-    if surface.heading is None:
-        raise MissingFacingError(surface.name, "the outline of a support")
-    pose = Pose2(surface.x, surface.y, surface.heading)
-    inside = outline_of(graph.classes[surface.kind]).contains(pose.transform_inverse([root.x, root.y]))
-    return bool(inside)
+def _boxes(graph: RelationGraph, constraint: Constraint, support: Support | None) -> Boxes:
+    names = (constraint.referent, constraint.relatum, constraint.towards or constraint.relatum)
+    classes = (graph.classes[graph.class_of(name)] for name in names)
+    referent, relatum, second = (half_box(kind.width, kind.depth) for kind in classes)
+    return Boxes(referent, relatum, support is not None and support.is_relatum, second)

@@ -6,50 +6,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from qsrlang.arrays import BoolArray, FloatArray, IntArray
+from qsrlang.arrays import FloatArray
 from qsrlang.errors import NoRoomError
 from qsrlang.geometry.angles import unit
 from qsrlang.geometry.polygon import ConvexPolygon
 from qsrlang.language.syntax import Density, Dimension, Uniform
 from qsrlang.mixtures.angles import Bump
+from qsrlang.mixtures.stance import Boxes, Stance
 
 MIN_OVERLAP = 1e-12
 MIN_ROOM = 1e-3
+MIN_WAY = 1e-3
 _REDRAWS = 16
 _CHUNK = 4096
-
-
-@dataclass(frozen=True, slots=True)
-class Boxes:
-    """Half lengths (along x) and half widths (along y) of referent and relatum [m]; a relatum may be the support."""
-
-    referent: tuple[float, float]
-    relatum: tuple[float, float]
-    relatum_supports: bool = False
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Stance:
-    """P possible stands of the relatum: positions (P, 2), box headings (P,), axes (P, J), support poses (P, 3)."""
-
-    positions: FloatArray
-    yaws: FloatArray
-    axes: FloatArray
-    support_poses: FloatArray | None = None
-
-    def at(self, chosen: BoolArray | IntArray | slice) -> Stance:
-        """Return some of the stands."""
-        poses = None if self.support_poses is None else self.support_poses[chosen]
-        return Stance(self.positions[chosen], self.yaws[chosen], self.axes[chosen], poses)
-
-    def distinct(self) -> tuple[IntArray, IntArray]:
-        """Return the first of each kind of stand, and for every stand (P,) which of those it equals."""
-        columns = [self.positions, self.yaws[:, None], self.axes]
-        columns += [] if self.support_poses is None else [self.support_poses]
-        _, first, which = np.unique(
-            np.concatenate(columns, axis=1), axis=0, return_index=True, return_inverse=True
-        )
-        return first, which.ravel()
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +30,7 @@ class PolarDensity:
     boxes touch to where the referent's box meets the edge of the support (given in the support's own frame), or
     over `reach` where no support is known. Directions without room are left out; from a stand where less than
     MIN_ROOM of the angle has room, the boxes touch. NoRoomError where no stand has room.
+    Towards a second relatum they run to where the referent's box touches that one, at least MIN_WAY [m] long.
     """
 
     angles: tuple[Bump, ...]
@@ -104,8 +74,7 @@ class PolarDensity:
 
     def bounds(self, stance: Stance, directions: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the least and the greatest distance along directions (P, N): twice (P, N) [m]."""
-        contact = self._contact(stance, directions)
-        edge = contact + self.reach if self.support is None else self._edge(stance, directions, self.support)
+        contact, edge = self._way(stance, directions)
         low, high = contact, np.full_like(contact, np.inf)
         for density in self.distances:
             if isinstance(density, Uniform):
@@ -115,16 +84,25 @@ class PolarDensity:
         bounded = self.support is not None or not np.isfinite(high).all()
         return low, np.minimum(high, edge) if bounded else high
 
-    def _contact(self, stance: Stance, directions: FloatArray) -> FloatArray:
-        length = self.boxes.referent[0] + self.boxes.relatum[0]
-        width = self.boxes.referent[1] + self.boxes.relatum[1]
-        if self.boxes.relatum_supports or length + width == 0.0:
-            return np.zeros_like(directions)
-        off = unit(directions - stance.yaws[:, None])
-        with np.errstate(divide="ignore", invalid="ignore"):
-            along = np.where(off[..., 0] != 0.0, length / np.abs(off[..., 0]), np.inf)
-            across = np.where(off[..., 1] != 0.0, width / np.abs(off[..., 1]), np.inf)
-        return np.asarray(np.minimum(along, across))
+    def _way(self, stance: Stance, directions: FloatArray) -> tuple[FloatArray, FloatArray]:
+        contact = self.boxes.contact(stance.yaws, directions)
+        if stance.ends is not None:
+            return self._way_to_second(stance.ends, directions, contact)
+        if self.support is not None:
+            return contact, self._edge(stance, directions, self.support)
+        return contact, contact + self.reach
+
+    def _way_to_second(
+        self, ends: FloatArray, directions: FloatArray, contact: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return the ends of the way to the second relatum; where the boxes meet, about where two such boxes would."""
+        length, yaws = ends[:, [0]], ends[:, 1]
+        second = self.boxes.second_contact(yaws, directions)
+        both = contact + second
+        middle = length * np.divide(contact, both, out=np.full_like(both, 0.5), where=both > 0.0)
+        short = length - both < MIN_WAY
+        low = np.where(short, np.maximum(middle - 0.5 * MIN_WAY, 0.0), contact)
+        return low, np.where(short, low + MIN_WAY, length - second)
 
     def _edge(self, stance: Stance, directions: FloatArray, support: ConvexPolygon) -> FloatArray:
         assert stance.support_poses is not None
@@ -204,7 +182,7 @@ class PolarDensity:
         return points
 
     def _draw_by_inversion(self, stance: Stance, rng: np.random.Generator) -> FloatArray:
-        chunks = [slice(at, at + _CHUNK) for at in range(0, len(stance.positions), _CHUNK)]
+        chunks = [slice(at, at + _CHUNK) for at in range(0, max(len(stance.positions), 1), _CHUNK)]
         return np.concatenate([self._draw_nodes(stance.at(chunk), rng) for chunk in chunks])
 
     def _draw_nodes(self, stance: Stance, rng: np.random.Generator) -> FloatArray:
@@ -214,8 +192,3 @@ class PolarDensity:
         rows = np.arange(len(weights))
         r = rng.uniform(low[rows, chosen], high[rows, chosen])
         return np.asarray(stance.positions + r[:, None] * unit(directions[rows, chosen]))
-
-
-def half_box(width: float, depth: float) -> tuple[float, float]:
-    """Return (half length, half width) of a box in its own frame, x to the front [m]."""
-    return 0.5 * depth, 0.5 * width

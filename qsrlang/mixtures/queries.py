@@ -2,29 +2,27 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import TypeAlias
 
 import numpy as np
 
-from qsrlang.arrays import FloatArray
-from qsrlang.errors import UnknownNameError, UnreachedTargetError, ValueRangeError
+from qsrlang.errors import UnansweredQueryError, UnknownNameError, ValueRangeError
 from qsrlang.geometry.pose import Pose2
+from qsrlang.language import questions
 from qsrlang.language.diagnostics import Diagnostic, raise_errors
 from qsrlang.language.parser import parse_landmark, parse_query
 from qsrlang.language.source import Source
-from qsrlang.language.syntax import Where as WhereQuery
-from qsrlang.mixtures.answers import Component, Where
-from qsrlang.mixtures.gaussian import GaussianMixture
-from qsrlang.mixtures.resolve import Placement, Plan, place_by_sampling, place_exactly, plan_world
-from qsrlang.mixtures.worlds import World, enumerate_worlds
-from qsrlang.relations.build import build_graph
+from qsrlang.mixtures.answers import Where
+from qsrlang.mixtures.inference import Engine, where_on_map, where_relative, where_relative_to
+from qsrlang.mixtures.names import check_object, check_question
+from qsrlang.relations.build import ANYWHERE, Built, build_graph
+from qsrlang.relations.contexts import Circumstances
 from qsrlang.relations.graph import Landmark, RelationGraph
 from qsrlang.relations.imports import find_knowledge, read_source
-from qsrlang.relations.symbols import landmark_value
+from qsrlang.relations.values import landmark_value
 
 Poses: TypeAlias = Mapping[str, Pose2 | Sequence[Pose2]]
 ENGINES = ("exact", "sampling")
@@ -33,10 +31,16 @@ DEFAULT_SAMPLES = 10_000
 
 @dataclass(frozen=True, slots=True)
 class KnowledgeBase:
-    """What is known, ready to be asked; `diagnostics` holds the warnings and hints found in its text."""
+    """What is known, ready to be asked; `diagnostics` holds the warnings and hints found in its text.
+
+    It was `built` from that text, for some `circumstances`; `added` are the landmarks that the text does not name.
+    """
 
     graph: RelationGraph
     diagnostics: tuple[Diagnostic, ...] = ()
+    built: Built | None = field(default=None, repr=False, compare=False)
+    circumstances: Circumstances = ANYWHERE
+    added: tuple[Landmark, ...] = ()
 
     @property
     def landmarks(self) -> tuple[Landmark, ...]:
@@ -54,9 +58,22 @@ class KnowledgeBase:
         """
         values = [landmark_value(parse_landmark(one)) if isinstance(one, str) else one for one in landmarks]
         for value in values:
-            self._check_class(value.kind)
-        kept = {landmark.name: landmark for landmark in (*self.graph.landmarks, *values)}
-        return replace(self, graph=replace(self.graph, landmarks=tuple(kept.values())))
+            if value.kind not in self.graph.classes:
+                raise UnknownNameError("class", value.kind, self.graph.classes)
+        known = {landmark.name: landmark for landmark in (*self.graph.landmarks, *values)}
+        added = {landmark.name: landmark for landmark in (*self.added, *values)}
+        graph = replace(self.graph, landmarks=tuple(known.values()))
+        return replace(self, graph=graph, added=tuple(added.values()))
+
+    def under(self, circumstances: Circumstances) -> KnowledgeBase:
+        """Return the knowledge that holds in these circumstances, with the landmarks that were added to it.
+
+        A graph that was not built from text holds in all of them.
+        """
+        known = replace(self, circumstances=circumstances)
+        if self.built is None or circumstances == self.circumstances:
+            return known
+        return replace(known, graph=self.built.under(circumstances)).with_landmarks(*self.added)
 
     def where(
         self,
@@ -71,25 +88,21 @@ class KnowledgeBase:
     ) -> Where:
         """Return where `target` is: a Gaussian mixture in the map frame, with the statements behind each component.
 
-        `landmarks` maps class names to poses; without any landmark, or with `wrt`, the mixture is relative to
-        the class the chain starts from (x away from the viewer, y to its left). `engine="sampling"` fits
-        Gaussians to `samples` draws of `rng`, as the paper does. Raises UnreachedTargetError, NoRoomError and
+        `target` is a class, a landmark or a role such as `left: Cup`; of a class that scenes tell apart by roles,
+        any instance. `landmarks` maps classes and roles to poses; without any landmark, or with `wrt`, the mixture is
+        relative to the class the chain starts from (x away from the viewer, y to its left). `engine="sampling"`
+        fits Gaussians to `samples` draws of `rng`, as the paper does. Raises UnreachedTargetError, NoRoomError and
         MissingFacingError.
         """
         for name in filter(None, (target, wrt)):
-            self._check_class(name)
-        if engine not in ENGINES:
-            raise UnknownNameError("engine", engine, ENGINES)
-        if engine == "sampling" and (rng is None or samples < 2):
-            raise ValueRangeError(
-                "the sampling engine's rng and samples", (rng, samples), "a generator and at least 2"
-            )
-        known = self.with_landmarks(*_instances(landmarks or {}))
-        relata = [wrt] if wrt else ([] if known.graph.landmarks else _starts(known.graph, target))
-        if not relata:
-            return _answer(known.graph, target, viewer, samples, rng)
-        answers = [_relative(known.graph, target, name, samples, rng) for name in relata]
-        return max(answers, key=lambda answer: 1.0 - answer.elsewhere)
+            check_object(name, self.graph)
+        placing = _engine(engine, samples, rng)
+        graph = self.with_landmarks(*_instances(landmarks or {}, self.graph)).graph
+        if wrt is not None:
+            return where_relative_to(graph, target, wrt, placing)
+        if graph.landmarks:
+            return where_on_map(graph, target, viewer, placing)
+        return where_relative(graph, target, placing)
 
     def ask(
         self,
@@ -100,16 +113,23 @@ class KnowledgeBase:
         samples: int = DEFAULT_SAMPLES,
         seed: int = 0,
     ) -> Where:
-        """Answer a query written in the language, such as `where Cup?` or `where Cup wrt Keyboard?`."""
-        parsed: WhereQuery = parse_query(query)
-        wrt = parsed.relatum.text if parsed.relatum else None
-        rng = np.random.default_rng(seed) if engine == "sampling" else None
-        return self.where(parsed.target.text, wrt=wrt, viewer=viewer, engine=engine, samples=samples, rng=rng)
+        """Answer a query written in the language, such as `where Cup?` or `where Cup in room r133 at 09:30?`.
 
-    def _check_class(self, name: str) -> None:
-        names = [*self.graph.classes, *(landmark.name for landmark in self.graph.landmarks)]
-        if name not in names:
-            raise UnknownNameError("class", name, names)
+        What the query does not say of the circumstances is as it is for this knowledge. Raises LanguageError,
+        UnknownNameError, and UnansweredQueryError for what this release does not answer.
+        """
+        question = parse_query(query)
+        known = self.under(_refined(self.circumstances, Circumstances.of(question.circumstances)))
+        check_question(question, known.graph)
+        if question.given is not None:
+            raise UnansweredQueryError("given")
+        if not isinstance(question, questions.Where):
+            raise UnansweredQueryError(type(question).__name__.lower())
+        wrt = question.relatum.text if question.relatum else None
+        rng = np.random.default_rng(seed) if engine == "sampling" else None
+        return known.where(
+            question.target.text, wrt=wrt, viewer=viewer, engine=engine, samples=samples, rng=rng
+        )
 
 
 def load(name: str | Path) -> KnowledgeBase:
@@ -128,90 +148,29 @@ def parse_knowledge(text: str, name: str = "<text>") -> KnowledgeBase:
 def _known(source: Source) -> KnowledgeBase:
     built = build_graph(source)
     raise_errors(built.diagnostics)
-    return KnowledgeBase(built.graph, built.diagnostics)
+    return KnowledgeBase(built.graph, built.diagnostics, built)
 
 
-def _instances(poses: Poses) -> list[Landmark]:
-    found = []
+def _refined(circumstances: Circumstances, asked: Circumstances) -> Circumstances:
+    """Return circumstances with what is asked for in the place of what was."""
+    said = {name: value for name, value in asdict(asked).items() if value is not None}
+    return replace(circumstances, **said)
+
+
+def _engine(name: str, samples: int, rng: np.random.Generator | None) -> Engine:
+    if name not in ENGINES:
+        raise UnknownNameError("engine", name, ENGINES)
+    if name == "exact":
+        return Engine()
+    if rng is None or samples < 2:
+        raise ValueRangeError(
+            "the sampling engine's rng and samples", (rng, samples), "a generator and at least 2"
+        )
+    return Engine(samples, rng)
+
+
+def _instances(poses: Poses, graph: RelationGraph) -> Iterator[Landmark]:
     for kind, given in poses.items():
         for number, pose in enumerate([given] if isinstance(given, Pose2) else given, start=1):
-            found.append(Landmark(f"{kind}-{number}", kind, pose.x, pose.y, heading=pose.yaw))
-    return found
-
-
-def _starts(graph: RelationGraph, target: str) -> list[str]:
-    """Return the classes at which the target's chains start: those no statement places."""
-    starts, waiting, seen = [], [target], {target}
-    while waiting:
-        name = waiting.pop(0)
-        relata = sorted(
-            {pair[1] for choice in graph.choices_for(name) for pair in choice.governs if pair[0] == name}
-        )
-        if not relata and name != target:
-            starts.append(name)
-        waiting += [relatum for relatum in relata if relatum not in seen]
-        seen.update(relata)
-    return starts
-
-
-def _relative(
-    graph: RelationGraph, target: str, relatum: str, samples: int, rng: np.random.Generator | None
-) -> Where:
-    """Answer with the relatum at the origin and the viewer's axis along +x."""
-    virtual = Landmark(relatum, graph.class_of(relatum), 0.0, 0.0, heading=math.pi)
-    answer = _answer(replace(graph, landmarks=(virtual,)), target, None, samples, rng)
-    return replace(answer, frame=relatum)
-
-
-def _answer(
-    graph: RelationGraph, target: str, viewer: Pose2 | None, samples: int, rng: np.random.Generator | None
-) -> Where:
-    plans = _plans(graph, target)
-    placed = [(world, _place(graph, plan, viewer, samples, rng)) for world, plan in plans]
-    claimed = sum(world.weight for world, _ in placed)
-    if claimed <= 0.0:
-        raise UnreachedTargetError(target, _chains(graph, target))
-    weights = _posterior(placed) * min(claimed, 1.0)
-    components = [
-        Component(float(weight), placement.mean, placement.covariance, _statements(placement))
-        for weight, (_, placement) in zip(weights, placed, strict=True)
-    ]
-    components.sort(key=lambda component: (-component.weight, *component.mean))
-    means = np.array([component.mean for component in components])
-    covariances = np.array([component.covariance for component in components])
-    shares = np.array([component.weight for component in components])
-    mixture = GaussianMixture(shares / shares.sum(), means, covariances)
-    return Where(target, "map", mixture, max(0.0, 1.0 - claimed), tuple(components))
-
-
-def _plans(graph: RelationGraph, target: str) -> list[tuple[World, Plan]]:
-    plans = ((world, plan_world(graph, world, target)) for world in enumerate_worlds(graph, target))
-    return [(world, plan) for world, plan in plans if plan is not None and world.weight > 0.0]
-
-
-def _place(
-    graph: RelationGraph, plan: Plan, viewer: Pose2 | None, samples: int, rng: np.random.Generator | None
-) -> Placement:
-    if rng is None:
-        return place_exactly(graph, plan, viewer)
-    return place_by_sampling(graph, plan, viewer, samples, rng)
-
-
-def _posterior(placed: Sequence[tuple[World, Placement]]) -> FloatArray:
-    """Return the worlds' weights, prior times evidence, normalised."""
-    logs = np.array([math.log(world.weight) + placement.log_evidence for world, placement in placed])
-    weights = np.exp(logs - logs.max())
-    return np.asarray(weights / weights.sum())
-
-
-def _statements(placement: Placement) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(str(constraint.statement) for constraint in placement.constraints))
-
-
-def _chains(graph: RelationGraph, target: str) -> list[str]:
-    chains = []
-    for choice in graph.choices_for(target):
-        for pair in sorted(choice.governs):
-            ends = ", ".join(_starts(graph, pair[1])) or pair[1]
-            chains.append(f"{pair[0]} - {pair[1]} ends at {ends}, which has no landmark")
-    return list(dict.fromkeys(chains))
+            name = kind if kind in graph.roles else f"{kind}-{number}"
+            yield Landmark(name, graph.roles.get(kind, kind), pose.x, pose.y, heading=pose.yaw)

@@ -1,4 +1,4 @@
-"""From a world to the pose of a target: placing objects along chains of landmarks, engine by engine."""
+"""From a plan to the pose of a target: placing objects along chains of landmarks, engine by engine."""
 
 from __future__ import annotations
 
@@ -10,42 +10,15 @@ import numpy as np
 from qsrlang.arrays import FloatArray
 from qsrlang.errors import UnreachedTargetError
 from qsrlang.geometry.pose import Pose2
-from qsrlang.mixtures.conditional import (
-    Conditional,
-    FitConditional,
-    PolarConditional,
-    Standpoint,
-    polar_density,
-    support_of,
-)
+from qsrlang.mixtures.conditional import Conditional, FitConditional, frame_of, polar_conditional
 from qsrlang.mixtures.joint import JointGaussian
-from qsrlang.mixtures.worlds import World
+from qsrlang.mixtures.plans import Plan, Step
+from qsrlang.mixtures.regions import region_conditional
+from qsrlang.mixtures.standpoint import Anchor, Standpoint
+from qsrlang.mixtures.supports import Seat, in_region
 from qsrlang.relations.graph import Constraint, Landmark, RelationGraph
 
 MIN_DEVIATION = 1e-3
-
-
-@dataclass(frozen=True, slots=True)
-class Step:
-    """One constraint in the order of placing; `places` is False where it only adds to what is placed already.
-
-    `relatum` names the relatum's block of the state: a landmark's own name, or a class that was placed before.
-    """
-
-    constraint: Constraint
-    relatum: str
-    root: Landmark
-    support: Landmark | None
-    places: bool
-
-
-@dataclass(frozen=True, slots=True)
-class Plan:
-    """The landmarks of a world, the steps that place its objects, and the block of the state that is the target."""
-
-    landmarks: tuple[Landmark, ...]
-    steps: tuple[Step, ...]
-    target: str
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -56,40 +29,6 @@ class Placement:
     covariance: FloatArray
     log_evidence: float
     constraints: tuple[Constraint, ...]
-
-
-def plan_world(graph: RelationGraph, world: World, target: str) -> Plan | None:
-    """Return how a world places the target, or None where no chain of it reaches a landmark."""
-    roots = world.landmarks
-    waiting = _towards(target, sorted(world.constraints, key=lambda c: (c.referent, c.relatum)))
-    steps: list[Step] = []
-    while True:
-        ready = [c for c in waiting if c.relatum in roots and c.referent not in world.landmarks]
-        if not ready:
-            break
-        constraint = next((c for c in ready if c.referent in roots), ready[0])
-        waiting.remove(constraint)
-        root = roots[constraint.relatum]
-        support = support_of(graph, constraint, root)
-        relatum = root.name if constraint.relatum in world.landmarks else constraint.relatum
-        steps.append(Step(constraint, relatum, root, support, constraint.referent not in roots))
-        roots.setdefault(constraint.referent, root)
-    if target not in roots:
-        return None
-    known = [*world.landmarks.values(), *(step.support for step in steps if step.support)]
-    block = world.landmarks[target].name if target in world.landmarks else target
-    return Plan(tuple({landmark.name: landmark for landmark in known}.values()), tuple(steps), block)
-
-
-def _towards(target: str, constraints: list[Constraint]) -> list[Constraint]:
-    """Return the constraints that help to place the target: its own, its relata's, and so on."""
-    needed, waiting = {target}, [target]
-    while waiting:
-        name = waiting.pop()
-        relata = {c.relatum for c in constraints if c.referent == name} - needed
-        needed |= relata
-        waiting += relata
-    return [c for c in constraints if c.referent in needed]
 
 
 def place_exactly(graph: RelationGraph, plan: Plan, viewer: Pose2 | None) -> Placement:
@@ -106,7 +45,7 @@ def place_exactly(graph: RelationGraph, plan: Plan, viewer: Pose2 | None) -> Pla
             joint, more = joint.observed(step.constraint.referent, conditional.moments)
             evidence += more + math.log(math.pi * graph.reach**2)
     mean, covariance = joint.marginal(plan.target)
-    return Placement(mean[:2], _definite(covariance[:2, :2]), evidence, _used(plan))
+    return Placement(mean[:2], _definite(covariance[:2, :2]), evidence, plan.constraints)
 
 
 def place_by_sampling(
@@ -137,33 +76,38 @@ def place_by_sampling(
     mean = weights @ points / weights.sum()
     covariance = np.cov(points.T, aweights=weights, ddof=0)
     evidence = float(logs.max() + math.log(weights.mean()))
-    return Placement(mean, _definite(covariance), evidence, _used(plan))
+    return Placement(mean, _definite(covariance), evidence, plan.constraints)
 
 
 def make_conditional(
     graph: RelationGraph, step: Step, blocks: dict[str, slice], viewer: Pose2 | None
 ) -> Conditional:
     """Return what a step's constraint says of its referent, given states stacked as `blocks` tell."""
-    constraint, root, relatum = step.constraint, step.root, blocks[step.relatum]
-    own_heading = step.relatum == root.name and root.heading is not None
-    support = None if step.support is None else blocks[step.support.name]
-    standpoint = Standpoint(
-        relatum, blocks[root.name], support, own_heading, root.heading is not None, root.name, viewer
-    )
+    constraint = step.constraint
+    support = None if step.support is None else _anchor(step.support.seat, blocks)
+    second = None if step.second is None else _anchor(step.second, blocks)
+    standpoint = Standpoint(_anchor(step.relatum, blocks), second, viewer, support)
     if constraint.fit is not None:
-        return FitConditional(constraint.fit, constraint.atoms[0].frame, standpoint)
-    density, frames = polar_density(graph, constraint, step.support)
-    return PolarConditional(density, frames, standpoint)
+        return FitConditional(constraint.fit, frame_of(constraint, constraint.atoms[0]), standpoint)
+    if in_region(constraint):
+        return region_conditional(graph, constraint, standpoint)
+    return polar_conditional(graph, constraint, standpoint, step.support)
+
+
+def _anchor(seat: Seat, blocks: dict[str, slice]) -> Anchor:
+    heading = None if seat.root.heading is None else blocks[seat.root.name].start + 2
+    return Anchor(blocks[seat.block], heading, seat.root.name)
 
 
 def _orientation(plan: Plan, viewer: Pose2 | None) -> float:
-    """Return a direction that turns with the scene: a landmark's heading, else the viewer's line of sight."""
-    for landmark in sorted(plan.landmarks, key=lambda landmark: landmark.name):
-        if landmark.heading is not None:
-            return landmark.heading
-        if viewer is not None:
-            return math.atan2(landmark.y - viewer.y, landmark.x - viewer.x)
-    return 0.0
+    """Return a direction that turns with the scene: a landmark's heading, else a line of sight between two places."""
+    landmarks = sorted(plan.landmarks, key=lambda landmark: landmark.name)
+    headings = [landmark.heading for landmark in landmarks if landmark.heading is not None]
+    if headings:
+        return headings[0]
+    x, y = (landmarks[0].x, landmarks[0].y) if viewer is None else (viewer.x, viewer.y)
+    sights = [math.atan2(one.y - y, one.x - x) for one in landmarks if (one.x, one.y) != (x, y)]
+    return sights[0] if sights else 0.0
 
 
 def _landmark_block(landmark: Landmark) -> tuple[FloatArray, FloatArray]:
@@ -182,7 +126,3 @@ def _definite(covariance: FloatArray) -> FloatArray:
     return (
         symmetric if np.linalg.eigvalsh(symmetric).min() > 0.0 else symmetric + MIN_DEVIATION**2 * np.eye(2)
     )
-
-
-def _used(plan: Plan) -> tuple[Constraint, ...]:
-    return tuple(step.constraint for step in plan.steps)

@@ -1,11 +1,12 @@
-"""Worlds: one alternative for every choice a target depends on, and one instance for every landmark class."""
+"""Worlds: one alternative for every choice a target depends on, and one instance for every class and role."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
 from qsrlang.errors import TooManyWorldsError
+from qsrlang.mixtures.roles import instances_in_roles, is_unplaced_role, landmarks_of_role
 from qsrlang.relations.graph import Alternative, Authority, Choice, Constraint, Landmark, Pair, RelationGraph
 
 MAX_WORLDS = 10_000
@@ -13,16 +14,19 @@ MAX_WORLDS = 10_000
 
 @dataclass(frozen=True, slots=True)
 class World:
-    """Constraints that hold together, with the landmark that stands for each name, and their prior weight."""
+    """Constraints that hold together, with the landmark that stands for each name, and their prior weight.
+
+    `aliases` name, for a class whose any instance will do, the role it is here; constraints name the role already.
+    """
 
     weight: float
     constraints: tuple[Constraint, ...] = ()
     bindings: tuple[tuple[str, Landmark], ...] = ()
+    aliases: tuple[tuple[str, str], ...] = ()
 
-    @property
-    def landmarks(self) -> dict[str, Landmark]:
-        """The landmark that stands for each class or landmark name."""
-        return dict(self.bindings)
+    def named(self, name: str) -> str:
+        """Return what a name stands for: for a class perhaps one of its roles."""
+        return dict(self.aliases).get(name, name)
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,12 +45,24 @@ def enumerate_worlds(graph: RelationGraph, target: str) -> tuple[World, ...]:
     while waiting:
         partial = waiting.pop()
         if not partial.pending:
-            complete.append(partial.world)
+            complete.append(_renamed(partial.world))
         else:
             waiting.extend(_step(graph, partial))
         if len(waiting) + len(complete) > MAX_WORLDS:
             raise TooManyWorldsError(target, MAX_WORLDS)
     return tuple(reversed(complete))
+
+
+def needed_for(name: str, constraints: Iterable[Constraint]) -> frozenset[str]:
+    """Return the names that help to place one: itself, the relata of its constraints, and so on."""
+    constraints = tuple(constraints)
+    needed, waiting = {name}, [name]
+    while waiting:
+        referent = waiting.pop()
+        relata = {one for c in constraints if c.referent == referent for one in c.relata} - needed
+        needed |= relata
+        waiting += relata
+    return frozenset(needed)
 
 
 def _step(graph: RelationGraph, partial: _Partial) -> Iterator[_Partial]:
@@ -55,23 +71,67 @@ def _step(graph: RelationGraph, partial: _Partial) -> Iterator[_Partial]:
         return iter([replace(partial, pending=tuple(rest))])
     instances = graph.instances_of(name)
     if instances:
-        return _bind(partial, name, instances)
+        return _bind(partial, [(1.0 / len(instances), landmark) for landmark in instances])
+    if is_unplaced_role(graph, name):
+        return _bind(partial, _landmarks_of_role(graph, partial, name))
+    candidates = _candidates(graph, partial, name)
+    if candidates:
+        return _stand_in(partial, candidates)
     choice = _next_choice(graph, partial, name)
     if choice is None:
-        relata = [c.relatum for c in partial.world.constraints if c.referent == name]
+        relata = [one for c in partial.world.constraints if c.referent == name for one in c.relata]
         pending = (*rest, *dict.fromkeys(relata))
         return iter([replace(partial, pending=pending, visited=partial.visited | {name})])
     return _choose(graph, partial, choice)
 
 
-def _bind(partial: _Partial, name: str, instances: tuple[Landmark, ...]) -> Iterator[_Partial]:
-    for landmark in instances:
+def _bind(partial: _Partial, instances: Iterable[tuple[float, Landmark | None]]) -> Iterator[_Partial]:
+    name, *rest = partial.pending
+    for share, landmark in instances:
+        bound = () if landmark is None else ((name, landmark),)
         world = replace(
             partial.world,
-            weight=partial.world.weight / len(instances),
-            bindings=(*partial.world.bindings, (name, landmark)),
+            weight=partial.world.weight * share,
+            bindings=(*partial.world.bindings, *bound),
         )
-        yield replace(partial, world=world, pending=partial.pending[1:], visited=partial.visited | {name})
+        yield replace(partial, world=world, pending=tuple(rest), visited=partial.visited | {name})
+
+
+def _landmarks_of_role(
+    graph: RelationGraph, partial: _Partial, role: str
+) -> tuple[tuple[float, Landmark | None], ...]:
+    kind = graph.roles[role]
+    named = {role, *(one for c in partial.world.constraints for one in (c.referent, *c.relata))}
+    alike = {one for one in named if graph.roles.get(one) == kind and is_unplaced_role(graph, one)}
+    taken = {landmark.name for name, landmark in partial.world.bindings if name in alike}
+    return landmarks_of_role(graph, role, taken, len(alike - partial.visited))
+
+
+def _candidates(graph: RelationGraph, partial: _Partial, name: str) -> tuple[str, ...]:
+    """Return what a class may be, if that is open: one of its roles, or itself."""
+    world = partial.world
+    if not graph.roles or name in dict(world.aliases) or any(c.referent == name for c in world.constraints):
+        return ()
+    candidates = instances_in_roles(graph, name)
+    return tuple(one for one in candidates if one == name or not _differ(one, name, world.constraints))
+
+
+def _differ(role: str, name: str, constraints: tuple[Constraint, ...]) -> bool:
+    """Return whether a role is not what a name stands for: one constraint names both, or the role depends on it."""
+    together = any({role, name} <= {one.referent, *one.relata} for one in constraints)
+    return together or name in needed_for(role, constraints)
+
+
+def _stand_in(partial: _Partial, candidates: tuple[str, ...]) -> Iterator[_Partial]:
+    name, *rest = partial.pending
+    for candidate in candidates:
+        world = replace(
+            partial.world,
+            weight=partial.world.weight / len(candidates),
+            aliases=(*partial.world.aliases, (name, candidate)),
+        )
+        visited = partial.visited if candidate == name else partial.visited | {name}
+        yield replace(partial, world=world, pending=(candidate, *rest), visited=visited)
 
 
 def _next_choice(graph: RelationGraph, partial: _Partial, name: str) -> Choice | None:
@@ -84,7 +144,10 @@ def _next_choice(graph: RelationGraph, partial: _Partial, name: str) -> Choice |
 
 def _choose(graph: RelationGraph, partial: _Partial, choice: Choice) -> Iterator[_Partial]:
     for alternative in _compatible(graph, choice, partial.covered):
-        fresh = [c for c in alternative.constraints if class_pair(graph, c) not in partial.covered]
+        pairs = [graph.pair_of(constraint) for constraint in alternative.constraints]
+        fresh = [
+            c for c, pair in zip(alternative.constraints, pairs, strict=True) if pair not in partial.covered
+        ]
         yield replace(
             partial,
             world=replace(
@@ -92,7 +155,7 @@ def _choose(graph: RelationGraph, partial: _Partial, choice: Choice) -> Iterator
                 weight=partial.world.weight * alternative.share,
                 constraints=(*partial.world.constraints, *fresh),
             ),
-            covered=partial.covered | {class_pair(graph, c) for c in fresh},
+            covered=partial.covered.union(pairs),
             decided=partial.decided | {id(choice)},
         )
 
@@ -101,12 +164,24 @@ def _compatible(graph: RelationGraph, choice: Choice, covered: frozenset[Pair]) 
     """Return the alternatives; scenes that were already passed over for another are left out if any remain."""
     if choice.authority is not Authority.SCENE:
         return choice.alternatives
-    free = [a for a in choice.alternatives if not any(class_pair(graph, c) in covered for c in a.constraints)]
+    free = [a for a in choice.alternatives if not any(graph.pair_of(c) in covered for c in a.constraints)]
     kept = free or list(choice.alternatives)
     total = sum(alternative.share for alternative in kept)
     return tuple(Alternative(alternative.share / total, alternative.constraints) for alternative in kept)
 
 
-def class_pair(graph: RelationGraph, constraint: Constraint) -> Pair:
-    """Return the ordered pair of classes that a constraint speaks of."""
-    return graph.class_of(constraint.referent), graph.class_of(constraint.relatum)
+def _renamed(world: World) -> World:
+    """Return the world with the role in the place of every class that is one."""
+    names = dict(world.aliases)
+    if not names:
+        return world
+    constraints = tuple(
+        replace(
+            one,
+            referent=names.get(one.referent, one.referent),
+            relatum=names.get(one.relatum, one.relatum),
+            towards=names.get(one.towards, one.towards) if one.towards else None,
+        )
+        for one in world.constraints
+    )
+    return replace(world, constraints=constraints)

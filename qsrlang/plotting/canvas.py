@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
@@ -15,6 +14,7 @@ from matplotlib.figure import Figure as Figure
 
 from qsrlang.arrays import FloatArray
 from qsrlang.errors import FileError, ValueRangeError
+from qsrlang.files import write_whole
 from qsrlang.plotting import style
 
 SUFFIXES = (".pdf", ".png", ".svg")
@@ -108,16 +108,5 @@ def save_figure(figure: Figure, path: Path | str) -> Path:
         raise FileError(path, "pictures are not written in this format", remedy)
     drawn = BytesIO()
     figure.savefig(drawn, format=suffix[1:], **_WRITING[suffix])
-    try:
-        _replace(path, drawn.getvalue())
-    except (OSError, ValueError) as error:
-        problem = f"the picture cannot be written ({getattr(error, 'strerror', None) or error})"
-        raise FileError(path, problem, "name a file in a folder that exists and may be written") from error
+    write_whole(path, drawn.getvalue())
     return path
-
-
-def _replace(path: Path, content: bytes) -> None:
-    with tempfile.TemporaryDirectory(prefix=".picture-", dir=path.parent) as folder:
-        whole = Path(folder) / path.name
-        whole.write_bytes(content)
-        whole.replace(path)

@@ -1,40 +1,78 @@
-"""The map of this folder: source -> library -> symbols -> choices -> graph."""
+"""The map of this folder: source -> library -> symbols -> layers -> graph."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from types import MappingProxyType
 
-from qsrlang.language.diagnostics import Diagnostic
+from qsrlang.language.diagnostics import Diagnostic, Diagnostics
+from qsrlang.language.parser import MAX_FINDINGS
 from qsrlang.language.source import Source
-from qsrlang.relations.choices import build_choices
+from qsrlang.relations.anchoring import report_unanchored
+from qsrlang.relations.contexts import Circumstances
 from qsrlang.relations.graph import RelationGraph
-from qsrlang.relations.imports import read_library
+from qsrlang.relations.imports import NOTHING_OPENED, Library, read_library
+from qsrlang.relations.layers import Layer, build_layers, in_force
 from qsrlang.relations.symbols import Symbols
+
+ANYWHERE = Circumstances()
 
 
 @dataclass(frozen=True, slots=True)
 class Built:
-    """A relation graph with all that was found wrong in its sources."""
+    """A relation graph with all that was found wrong in its sources, and what it was built from."""
 
     graph: RelationGraph
-    diagnostics: tuple[Diagnostic, ...]
+    diagnostics: Diagnostics
+    library: Library
+    symbols: Symbols
+    layers: tuple[Layer, ...]
+
+    def under(self, circumstances: Circumstances) -> RelationGraph:
+        """Return the relation graph that holds in other circumstances."""
+        return _graph(self.layers, self.symbols, circumstances)
 
 
-def build_graph(source: Source) -> Built:
-    """Return the relation graph of a source and all it imports; use it only if no diagnostic is an error."""
-    library = read_library(source)
+def build_graph(
+    source: Source,
+    circumstances: Circumstances | None = None,
+    opened: Mapping[Path, Source] = NOTHING_OPENED,
+) -> Built:
+    """Return the relation graph of a source and all it imports; use it only if no diagnostic is an error.
+
+    `opened` sources stand for the files at their resolved paths.
+    """
+    library = read_library(source, opened)
     statements = [statement for document in library.documents for statement in document.statements]
-    symbols = Symbols()
+    symbols = Symbols(library.lost, max(0, len(library.documents) - 2))
     symbols.gather(statements)
-    choices = build_choices(statements, symbols)
-    graph = RelationGraph(
+    layers = build_layers(statements, symbols)
+    report_unanchored(symbols)
+    graph = _graph(layers, symbols, circumstances or ANYWHERE)
+    return Built(
+        graph, _ordered((*library.diagnostics, *symbols.diagnostics), source), library, symbols, layers
+    )
+
+
+def _ordered(found: tuple[Diagnostic, ...], source: Source) -> Diagnostics:
+    """Return the findings in the order of their places, those of the file itself first, up to MAX_FINDINGS of them."""
+    ordered = sorted(found, key=lambda finding: (finding.span.source.name != source.name, finding.span.start))
+    if len(ordered) > MAX_FINDINGS:
+        message = f"{len(ordered)} findings; the first {MAX_FINDINGS} are shown"
+        ordered[MAX_FINDINGS:] = [Diagnostic("Q107", message, ordered[MAX_FINDINGS].span)]
+    return Diagnostics(ordered)
+
+
+def _graph(layers: tuple[Layer, ...], symbols: Symbols, circumstances: Circumstances) -> RelationGraph:
+    choices, requirements = in_force(layers, circumstances, symbols)
+    return RelationGraph(
         MappingProxyType(symbols.classes),
         MappingProxyType(symbols.relations),
         tuple(symbols.landmarks.values()),
         choices,
-        symbols.defaults["reach"],
+        symbols.defaults.get("reach", 1.0),
+        MappingProxyType(symbols.roles),
+        requirements,
     )
-    found = (*library.diagnostics, *symbols.diagnostics)
-    ordered = sorted(found, key=lambda finding: (finding.span.source.name != source.name, finding.span.start))
-    return Built(graph, tuple(ordered))

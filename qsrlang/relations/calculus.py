@@ -12,7 +12,10 @@ MAX_CONJUNCTIONS = 64
 
 @dataclass(frozen=True, slots=True)
 class Relation:
-    """A relation: what it says of angle and distance, and which relations it excludes."""
+    """A relation: what it says of angle, distance and region, which relations it excludes, and how many it relates.
+
+    A `region` is the part of the relatum that the referent lies in: "top" or "inside".
+    """
 
     name: str
     angle: Density | None
@@ -20,6 +23,8 @@ class Relation:
     converse: str | None = None
     disjoint: tuple[str, ...] = ()
     symmetric: bool = False
+    region: str | None = None
+    arity: int = 2
 
     @property
     def terms(self) -> tuple[tuple[float, Relation], ...]:
@@ -69,7 +74,7 @@ def _expand(
 
 
 def _opposites(atom: Atom, relations: Mapping[str, Relation]) -> tuple[tuple[Atom, ...], ...]:
-    opposites = relations[atom.relation.text].disjoint
+    opposites = [one for one in relations[atom.relation.text].disjoint if one in relations]
     if not opposites:
         raise NoOpposite(atom)
     names = [Name(atom.relation.span, opposite) for opposite in opposites]

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import TypeAlias
 
 from qsrlang.language.source import Span
-from qsrlang.language.syntax import Fit, Frame
+from qsrlang.language.syntax import Fit, Formula, Frame
 from qsrlang.relations.calculus import Relation
 
 
@@ -70,13 +70,23 @@ class AtomicRelation:
 
 @dataclass(frozen=True, slots=True)
 class Constraint:
-    """What one statement says of where `referent` lies as seen from `relatum`: atoms that all hold, or a fit."""
+    """What one statement says of where `referent` lies as seen from `relatum`: atoms that all hold, or a fit.
+
+    Atoms of ternary relations have a second relatum, `towards`: their axis runs from `relatum` to it, and their
+    distances are shares of the way between the two.
+    """
 
     referent: str
     relatum: str
     atoms: tuple[AtomicRelation, ...]
     statement: Statement
     fit: Fit | None = None
+    towards: str | None = None
+
+    @property
+    def relata(self) -> tuple[str, ...]:
+        """The names it places its referent by."""
+        return (self.relatum,) if self.towards is None else (self.relatum, self.towards)
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +108,11 @@ class Authority(IntEnum):
 Pair: TypeAlias = tuple[str, str]
 
 
+def pair_of(constraint: Constraint, node_of: Callable[[str], str]) -> Pair:
+    """Return (referent, relatum) by their classes; two relata make one: `between(X, A, B)` gives (X, "A and B")."""
+    return node_of(constraint.referent), " and ".join(node_of(name) for name in constraint.relata)
+
+
 @dataclass(frozen=True, slots=True)
 class Choice:
     """Exclusive alternatives for the pairs of classes it governs; shares below 1 leave the rest to `elsewhere`.
@@ -111,22 +126,49 @@ class Choice:
 
 
 @dataclass(frozen=True, slots=True)
+class Requirement:
+    """A formula that holds: always where share is None (hard), else with this probability (soft)."""
+
+    share: float | None
+    formula: Formula
+    statement: Statement
+
+
+@dataclass(frozen=True, slots=True)
 class RelationGraph:
-    """All that is known: an edge (referent, relatum) for every pair that a choice speaks of."""
+    """All that is known: an edge (referent, relatum) for every pair that a choice speaks of.
+
+    `roles` maps the objects that scenes tell apart by a role, such as `left: Cup`, to their classes.
+    """
 
     classes: Mapping[str, ObjectClass]
     relations: Mapping[str, Relation]
     landmarks: tuple[Landmark, ...]
     choices: tuple[Choice, ...]
     reach: float
+    roles: Mapping[str, str] = field(default_factory=dict)
+    requirements: tuple[Requirement, ...] = ()
+
+    def node_of(self, name: str) -> str:
+        """Return what statements about a name are about: a role is its own, a landmark counts as its class."""
+        return name if name in self.roles else self.class_of(name)
+
+    def pair_of(self, constraint: Constraint) -> Pair:
+        """Return the ordered pair that a constraint speaks of, as choices govern it."""
+        return pair_of(constraint, self.node_of)
 
     def choices_for(self, referent: str) -> tuple[Choice, ...]:
         """Return the choices that say where `referent` is."""
         return tuple(c for c in self.choices if any(pair[0] == referent for pair in c.governs))
 
     def class_of(self, name: str) -> str:
-        """Return the class that a class or landmark name stands for."""
-        return next((landmark.kind for landmark in self.landmarks if landmark.name == name), name)
+        """Return the class that the name of a class, a landmark or a role stands for."""
+        kinds = (landmark.kind for landmark in self.landmarks if landmark.name == name)
+        return next(kinds, self.roles.get(name, name))
+
+    def roles_of(self, kind: str) -> tuple[str, ...]:
+        """Return the objects that scenes tell apart by a role among the instances of a class."""
+        return tuple(role for role, of in self.roles.items() if of == kind)
 
     def instances_of(self, name: str) -> tuple[Landmark, ...]:
         """Return the landmarks that a class or landmark name stands for."""

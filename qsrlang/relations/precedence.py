@@ -4,32 +4,25 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
-from qsrlang.language import syntax as s
 from qsrlang.language.diagnostics import Diagnostic, Label, Severity
-from qsrlang.relations.graph import Alternative, Authority, Choice, Constraint, Pair
+from qsrlang.language.statements import Believe, Observe
+from qsrlang.language.syntax import Node
+from qsrlang.relations.evidence import Evidence
+from qsrlang.relations.graph import Alternative, Authority, Choice, Constraint, Pair, pair_of
 from qsrlang.relations.symbols import Symbols
 
 
-@dataclass(frozen=True, slots=True)
-class Evidence:
-    """One alternative that a statement names, with its share or count, and the statement's place."""
-
-    weight: float
-    constraints: tuple[Constraint, ...]
-    node: s.Node
-
-
 def settle(
-    beliefs: list[tuple[s.Believe, list[Evidence]]],
+    beliefs: list[tuple[Believe, list[Evidence]]],
     counts: list[Evidence],
     scenes: list[Evidence],
     symbols: Symbols,
 ) -> tuple[Choice, ...]:
     """Return the choices that hold, with what each pair is governed by; what is overridden is reported."""
     by_pair = _by_pair(counts, symbols)
-    governed: dict[Pair, s.Node] = {}
+    governed: dict[Pair, Node] = {}
     choices = []
     for believe, alternatives in beliefs:
         pairs = _pairs(alternatives, symbols)
@@ -43,7 +36,7 @@ def settle(
 
 
 def _ungoverned(
-    authority: Authority, by_pair: dict[Pair, list[Evidence]], governed: dict[Pair, s.Node], symbols: Symbols
+    authority: Authority, by_pair: dict[Pair, list[Evidence]], governed: dict[Pair, Node], symbols: Symbols
 ) -> list[Choice]:
     """Return a choice for each pair that nothing of more authority governs, and tell of the others."""
     choices = []
@@ -69,9 +62,7 @@ def _by_pair(evidence: Iterable[Evidence], symbols: Symbols) -> dict[Pair, list[
 
 
 def _class_pair(constraint: Constraint, symbols: Symbols) -> Pair:
-    names = (constraint.referent, constraint.relatum)
-    first, second = (symbols.landmarks[n].kind if n in symbols.landmarks else n for n in names)
-    return first, second
+    return pair_of(constraint, symbols.class_of)
 
 
 def _shares(evidence: list[Evidence]) -> tuple[Alternative, ...]:
@@ -124,19 +115,17 @@ def _refined(belief: Evidence, share: float, fitted: list[Evidence]) -> list[Alt
 
 def _key(evidence: Evidence) -> object:
     return frozenset(
-        (c.referent, c.relatum, frozenset((a.relation, a.frame) for a in c.atoms))
+        (c.referent, c.relatum, c.towards, frozenset((a.relation, a.frame) for a in c.atoms))
         for c in evidence.constraints
     )
 
 
-def _without(one: Evidence, governed: dict[Pair, s.Node], symbols: Symbols) -> Evidence:
+def _without(one: Evidence, governed: dict[Pair, Node], symbols: Symbols) -> Evidence:
     kept = tuple(c for c in one.constraints if _class_pair(c, symbols) not in governed)
     return Evidence(one.weight, kept, one.node)
 
 
-def _refuse_second(
-    believe: s.Believe, pairs: set[Pair], governed: dict[Pair, s.Node], symbols: Symbols
-) -> None:
+def _refuse_second(believe: Believe, pairs: set[Pair], governed: dict[Pair, Node], symbols: Symbols) -> None:
     for pair in sorted(pairs):
         if pair in governed:
             label = Label(governed[pair].span, "first believed here")
@@ -145,8 +134,8 @@ def _refuse_second(
         governed.setdefault(pair, believe)
 
 
-def _tell_override(pair: Pair, evidence: list[Evidence], winner: s.Node, symbols: Symbols) -> None:
-    if isinstance(winner, s.Believe) and isinstance(evidence[0].node, s.Observe):
+def _tell_override(pair: Pair, evidence: list[Evidence], winner: Node, symbols: Symbols) -> None:
+    if isinstance(winner, Believe) and isinstance(evidence[0].node, Observe):
         return
     for node in {id(one.node): one.node for one in evidence}.values():
         label = Label(winner.span, "this wins")

@@ -24,7 +24,7 @@ def only(text):
 
 def test_the_paper_s_formula_is_legal_as_printed():
     scene = only(FORMULA)
-    assert [name.text for name in scene.classes] == ["Monitor", "Keyboard", "Laptop", "Cup", "Bottle"]
+    assert [name.text for name in scene.members] == ["Monitor", "Keyboard", "Laptop", "Cup", "Bottle"]
     assert [atom.relation.text for atom in scene.formula.parts] == [
         "in-front-of",
         "left-of",
@@ -82,8 +82,8 @@ def test_a_diagnostic_shows_file_line_column_caret_and_a_suggestion():
         "  --> office.qsr:3:4\n"
         "  |\n"
         "3 |    left_of(Cup, Plate).\n"
-        "  |    ^^^^^^^ no relation of this name here or in what is imported\n"
-        "   = help: did you mean 'left-of'?"
+        "  |    ^^^^^^^ no relation of this name here\n"
+        "   = help: did you mean 'left-of' (core.qsr:9)?"
     )
 
 

@@ -54,6 +54,9 @@ def test_the_built_in_relations_are_text_and_nowhere_in_code():
         "right-of",
         "close-to",
         "distant-from",
+        "between",
+        "on",
+        "in",
     }
     for name, relation in known.graph.relations.items():
         for other in relation.disjoint:

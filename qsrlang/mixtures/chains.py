@@ -1,0 +1,43 @@
+"""Chains: from a target over what it is placed by to the classes that nothing places."""
+
+from __future__ import annotations
+
+from qsrlang.mixtures.roles import instances_in_roles
+from qsrlang.relations.graph import RelationGraph
+
+
+def placed_by(graph: RelationGraph, name: str) -> tuple[str, ...]:
+    """Return the classes and roles that statements place a class or role by, sorted; a class also by its roles."""
+    constraints = [
+        constraint
+        for choice in graph.choices_for(name)
+        for alternative in choice.alternatives
+        for constraint in alternative.constraints
+        if graph.node_of(constraint.referent) == name
+    ]
+    relata = {graph.node_of(relatum) for constraint in constraints for relatum in constraint.relata}
+    return tuple(sorted((relata | set(instances_in_roles(graph, name))) - {name}))
+
+
+def chain_starts(graph: RelationGraph, target: str) -> tuple[str, ...]:
+    """Return the classes at which a target's chains start: those that landmarks place, or no statement does."""
+    starts, waiting, seen = [], [target], {target}
+    while waiting:
+        name = waiting.pop(0)
+        relata = () if graph.instances_of(name) else placed_by(graph, name)
+        if not relata and name != target:
+            starts.append(graph.class_of(name))
+        waiting += [relatum for relatum in relata if relatum not in seen]
+        seen.update(relata)
+    return tuple(dict.fromkeys(starts))
+
+
+def broken_chains(graph: RelationGraph, target: str) -> tuple[str, ...]:
+    """Return, for each thing a target is placed by, a sentence on where its chains end without a landmark."""
+    chains = []
+    for relatum in placed_by(graph, target):
+        starts = chain_starts(graph, relatum) or (graph.class_of(relatum),)
+        ends = [name for name in starts if not graph.instances_of(name)]
+        if ends:
+            chains.append(f"{target} - {relatum} ends at {', '.join(ends)}, which has no landmark")
+    return tuple(chains)

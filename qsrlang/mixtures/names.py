@@ -1,0 +1,55 @@
+"""Whether the words of a question stand for something that is known."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from qsrlang.errors import UnknownNameError, ValueRangeError
+from qsrlang.language.questions import Explain, Landmarks, Prob, Query, Views, Where
+from qsrlang.language.syntax import Argument, Atom, atoms_of
+from qsrlang.relations.graph import RelationGraph
+
+
+def check_question(question: Query, graph: RelationGraph) -> None:
+    """Raise UnknownNameError for a name nothing bears, ValueRangeError for an atom with too many or few arguments."""
+    for part in _parts(question):
+        if isinstance(part, Atom):
+            _check_atom(part, graph)
+        else:
+            check_object(part.text, graph)
+
+
+def check_object(name: str, graph: RelationGraph) -> None:
+    """Raise UnknownNameError unless a name is that of a class, a landmark or a role."""
+    landmarks = (landmark.name for landmark in graph.landmarks)
+    known = [*graph.classes, *landmarks, *graph.roles]
+    if name not in known:
+        raise UnknownNameError("role" if ":" in name else "class", name, known)
+
+
+def _parts(question: Query) -> Iterator[Argument | Atom]:
+    match question:
+        case Where(target=subject, relatum=relatum) | Explain(subject=subject, relatum=relatum):
+            yield subject
+            if relatum is not None:
+                yield relatum
+        case Views(target=target) | Landmarks(target=target):
+            yield target
+        case Prob(formula=formula):
+            yield from atoms_of(formula)
+        case _:
+            pass
+    if question.given is not None:
+        yield from atoms_of(question.given)
+
+
+def _check_atom(atom: Atom, graph: RelationGraph) -> None:
+    relation = graph.relations.get(atom.relation.text)
+    if relation is None:
+        raise UnknownNameError("relation", atom.relation.text, graph.relations)
+    if len(atom.arguments) != relation.arity:
+        raise ValueRangeError(
+            f"the number of arguments of '{relation.name}'", len(atom.arguments), str(relation.arity)
+        )
+    for argument in atom.arguments:
+        check_object(argument.text, graph)

@@ -1,0 +1,87 @@
+"""Support and containment: a referent anywhere on the top of its relatum, or anywhere inside its box."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from qsrlang.arrays import FloatArray
+from qsrlang.geometry.angles import rotation, unit
+from qsrlang.mixtures.conditional import Conditional
+from qsrlang.mixtures.standpoint import Standpoint
+from qsrlang.relations.graph import Constraint, RelationGraph
+
+MIN_SIDE = 1e-3
+
+
+@dataclass(frozen=True, slots=True)
+class BoxConditional:
+    """U(x; the relatum's box, turned with it): `length` along its heading, `width` across [m]."""
+
+    length: float
+    width: float
+    standpoint: Standpoint
+
+    def moments(self, states: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return mean (P, 2) and covariance R diag(length^2, width^2) / 12 R^T (P, 2, 2) of x."""
+        turn = rotation(self.standpoint.box_yaws(states))
+        spread = turn * (np.square(self._sides) / 12.0)
+        return self.standpoint.relatum.positions(states), spread @ turn.transpose(0, 2, 1)
+
+    def sample(self, states: FloatArray, rng: np.random.Generator) -> FloatArray:
+        """Return one draw (P, 2) from each state."""
+        offsets = (rng.random((len(states), 2)) - 0.5) * self._sides
+        turn = rotation(self.standpoint.box_yaws(states))
+        return np.asarray(self.standpoint.relatum.positions(states) + np.einsum("pij,pj->pi", turn, offsets))
+
+    def pdf(self, points: FloatArray, states: FloatArray) -> FloatArray:
+        """Return the density (P,) of one point (P, 2) per state [1/m^2]."""
+        turn = rotation(self.standpoint.box_yaws(states))
+        offsets = np.einsum("pij,pi->pj", turn, points - self.standpoint.relatum.positions(states))
+        inside = (np.abs(offsets) <= 0.5 * self._sides).all(axis=1)
+        return np.where(inside, 1.0 / (self.length * self.width), 0.0)
+
+    @property
+    def _sides(self) -> FloatArray:
+        return np.array([self.length, self.width])
+
+
+@dataclass(frozen=True, slots=True)
+class DiscConditional:
+    """U(x; the disc of `radius` [m] about the relatum)."""
+
+    radius: float
+    standpoint: Standpoint
+
+    def moments(self, states: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return mean (P, 2) and covariance radius^2 / 4 I (P, 2, 2) of x."""
+        positions = self.standpoint.relatum.positions(states)
+        return positions, np.tile(0.25 * self.radius**2 * np.eye(2), (len(states), 1, 1))
+
+    def sample(self, states: FloatArray, rng: np.random.Generator) -> FloatArray:
+        """Return one draw (P, 2) from each state."""
+        r = self.radius * np.sqrt(rng.random(len(states)))
+        theta = rng.uniform(-np.pi, np.pi, len(states))
+        return np.asarray(self.standpoint.relatum.positions(states) + r[:, None] * unit(theta))
+
+    def pdf(self, points: FloatArray, states: FloatArray) -> FloatArray:
+        """Return the density (P,) of one point (P, 2) per state [1/m^2]."""
+        offsets = points - self.standpoint.relatum.positions(states)
+        inside = np.hypot(*offsets.T) <= self.radius
+        return np.where(inside, 1.0 / (np.pi * self.radius**2), 0.0)
+
+
+def region_conditional(graph: RelationGraph, constraint: Constraint, standpoint: Standpoint) -> Conditional:
+    """Return where in its relatum a referent lies, so that its own box does not stand out, as far as there is room.
+
+    Each side is at least MIN_SIDE [m]; a relatum without a size is a disc of the graph's reach.
+    """
+    referent, relatum = (
+        graph.classes[graph.class_of(name)] for name in (constraint.referent, constraint.relatum)
+    )
+    if relatum.width == 0.0 or relatum.depth == 0.0:
+        return DiscConditional(graph.reach, standpoint)
+    length = max(relatum.depth - referent.depth, MIN_SIDE)
+    width = max(relatum.width - referent.width, MIN_SIDE)
+    return BoxConditional(length, width, standpoint)

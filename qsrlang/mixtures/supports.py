@@ -1,0 +1,100 @@
+"""What a referent stands on or lies in: where its way ends, and which surface that is."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from qsrlang.errors import MissingFacingError
+from qsrlang.geometry.polygon import ConvexPolygon
+from qsrlang.geometry.pose import Pose2
+from qsrlang.relations.graph import Constraint, Landmark, ObjectClass, Pair, RelationGraph
+
+
+@dataclass(frozen=True, slots=True)
+class Seat:
+    """A placed object: its block of the state (a landmark's own name, or that of a class), and its chain's root."""
+
+    block: str
+    root: Landmark
+
+    @property
+    def is_landmark(self) -> bool:
+        """Whether the object is a landmark itself."""
+        return self.block == self.root.name
+
+
+@dataclass(frozen=True, slots=True)
+class Support:
+    """A placed object that carries or contains a referent; it may be the relatum itself."""
+
+    kind: ObjectClass
+    seat: Seat
+    is_relatum: bool
+
+    @property
+    def outline(self) -> ConvexPolygon:
+        """The outline of its box in its own frame."""
+        return _outline(self.kind)
+
+
+def in_region(constraint: Constraint) -> bool:
+    """Return whether a constraint speaks of a part of its relatum: its top or its inside."""
+    return any(atom.relation.region is not None for atom in constraint.atoms)
+
+
+def support_of(
+    graph: RelationGraph, constraint: Constraint, others: Iterable[Constraint], seats: Mapping[str, Seat]
+) -> Support | None:
+    """Return what bounds the distances of a constraint, given the others of its world and what is placed.
+
+    That is what the referent is said to be on or in, where the constraint's relatum is that too; else the surface
+    its class stands on. None where neither is known, and for regions and ternary relations, which bound themselves.
+    """
+    if constraint.towards is not None or in_region(constraint):
+        return None
+    stated = _stated_support(graph, constraint, others, seats)
+    return stated or _usual_support(graph, constraint, seats[constraint.relatum].root)
+
+
+def _stated_support(
+    graph: RelationGraph, constraint: Constraint, others: Iterable[Constraint], seats: Mapping[str, Seat]
+) -> Support | None:
+    regions: list[Pair] = [(one.referent, one.relatum) for one in others if in_region(one)]
+    for referent, name in regions:
+        if referent != constraint.referent or name not in seats:
+            continue
+        kind, seat, is_relatum = graph.classes[graph.class_of(name)], seats[name], name == constraint.relatum
+        if kind.width == 0.0 or seat.root.heading is None:
+            continue
+        within = is_relatum or (constraint.relatum, name) in regions
+        if within or (seat.is_landmark and _carries(graph, seat.root, seats[constraint.relatum].root)):
+            return Support(kind, seat, is_relatum)
+    return None
+
+
+def _usual_support(graph: RelationGraph, constraint: Constraint, root: Landmark) -> Support | None:
+    """Return the surface of the class that referent or relatum stands `on`, if the root landmark is on it."""
+    classes = [graph.classes[graph.class_of(name)] for name in (constraint.referent, constraint.relatum)]
+    wanted = classes[0].on or classes[1].on
+    if wanted is None or graph.classes[wanted].width == 0.0:
+        return None
+    for landmark in graph.instances_of(wanted):
+        if _carries(graph, landmark, root):
+            is_relatum = constraint.relatum in (landmark.name, landmark.kind)
+            return Support(graph.classes[landmark.kind], Seat(landmark.name, landmark), is_relatum)
+    return None
+
+
+def _carries(graph: RelationGraph, surface: Landmark, root: Landmark) -> bool:
+    if surface.name == root.name:
+        return True
+    if surface.heading is None:
+        raise MissingFacingError(surface.name, "the outline of a support")
+    pose = Pose2(surface.x, surface.y, surface.heading)
+    inside = _outline(graph.classes[surface.kind]).contains(pose.transform_inverse([root.x, root.y]))
+    return bool(inside)
+
+
+def _outline(kind: ObjectClass) -> ConvexPolygon:
+    return ConvexPolygon.rectangle(Pose2(0.0, 0.0), kind.depth, kind.width)

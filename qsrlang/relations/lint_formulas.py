@@ -1,0 +1,189 @@
+"""Rules about formulas: atoms that others imply, frames that are ambiguous, disjunctions where a belief was meant."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections import defaultdict
+from collections.abc import Iterator
+from itertools import combinations
+
+from qsrlang.language.diagnostics import Diagnostic, Edit, Label
+from qsrlang.language.printer import print_formula
+from qsrlang.language.source import Span
+from qsrlang.language.statements import Believe, Observe, Require, Statement
+from qsrlang.language.syntax import And, Atom, Formula, Frame, Normal, Not, Or, Uniform, atoms_of
+from qsrlang.relations.calculus import Relation
+from qsrlang.relations.linted import Linted, warning, without_comments
+
+TURN = 2.0 * math.pi
+_CONNECTIVE = re.compile(r"\s*(?:∧|&|and)\s*")
+_DECIMALS = 9
+_SLACK = 1e-9
+
+
+def implied_atoms(linted: Linted) -> Iterator[Diagnostic]:
+    """Atoms of a conjunction that say what another one says: the same, or its converse the other way round."""
+    for _, formula in linted.formulas():
+        for part in _unnegated(formula):
+            if isinstance(part, And):
+                yield from _implied(part, linted)
+
+
+def _implied(conjunction: And, linted: Linted) -> Iterator[Diagnostic]:
+    said: dict[tuple[object, ...], Atom] = {}
+    for number, atom in enumerate(conjunction.parts):
+        if not isinstance(atom, Atom):
+            continue
+        ways = _ways_to_say(atom, linted.symbols.relations.get(atom.relation.text))
+        first = next((said[way] for way in ways if way in said), None)
+        if first is None:
+            said[ways[0]] = atom
+            continue
+        yield warning(
+            "Q506",
+            f"'{atom.span.text}' says nothing new",
+            atom.span,
+            "implied by the other atom",
+            "leave one of the two out",
+            labels=(Label(first.span, "this says the same"),),
+            edits=_without(conjunction, number),
+        )
+
+
+def _ways_to_say(atom: Atom, relation: Relation | None) -> list[tuple[object, ...]]:
+    """Return the atom itself as (relation, frame, arguments), then what is the same said in other words."""
+    names = tuple(argument.text for argument in atom.arguments)
+    ways: list[tuple[object, ...]] = [(atom.relation.text, atom.frame, *names)]
+    if relation is None or len(names) != relation.arity:
+        return ways
+    if relation.symmetric:
+        ways.append(
+            (atom.relation.text, atom.frame, *(names[::-1] if len(names) == 2 else (names[0], *names[:0:-1])))
+        )
+    if relation.converse and len(names) == 2 and atom.frame is not Frame.INTRINSIC:
+        ways.append((relation.converse, atom.frame, *names[::-1]))
+    return ways
+
+
+def _without(conjunction: And, number: int) -> tuple[Edit, ...]:
+    """Return the edit that takes a later part out, where only a connective stands between it and the one before."""
+    before, part = conjunction.parts[number - 1], conjunction.parts[number]
+    place = Span(part.span.source, before.span.end, part.span.end)
+    between = place.source.text[before.span.end : part.span.start]
+    return without_comments(Edit(place, "")) if _CONNECTIVE.fullmatch(between) else ()
+
+
+def ambiguous_frames(linted: Linted) -> Iterator[Diagnostic]:
+    """Atoms without `wrt` that mean something else by the front of their relatum than as seen by a viewer."""
+    for _, formula in linted.formulas():
+        for atom in atoms_of(formula):
+            kind = _kind_with_a_front(atom, linted)
+            if kind is not None:
+                yield _ambiguous(atom, kind, linted)
+
+
+def _kind_with_a_front(atom: Atom, linted: Linted) -> str | None:
+    """Return the class of the relatum where its front makes the atom ambiguous."""
+    symbols = linted.symbols
+    relation = symbols.relations.get(atom.relation.text)
+    if (
+        atom.framed
+        or relation is None
+        or len(atom.arguments) != 2
+        or relation.arity != 2
+        or _is_mirrored(relation)
+    ):
+        return None
+    relatum = atom.arguments[1].text
+    kind = symbols.class_of(symbols.roles.get(relatum, relatum))
+    return kind if kind in symbols.classes and symbols.classes[kind].front else None
+
+
+def _ambiguous(atom: Atom, kind: str, linted: Linted) -> Diagnostic:
+    declared = linted.symbols.places.get(("class", kind))
+    labels = (Label(declared.span, "declared here with its front"),) if declared else ()
+    return warning(
+        "Q507",
+        f"'{atom.relation}' is ambiguous, for '{kind}' has a front",
+        atom.span,
+        "without 'wrt' it is as the viewer sees it",
+        f"write 'wrt relative' for that, or 'wrt intrinsic' for the {kind}'s own side",
+        labels=labels,
+        edits=(Edit(Span(linted.source, atom.span.end, atom.span.end), " wrt relative"),),
+    )
+
+
+def _is_mirrored(relation: Relation) -> bool:
+    """Whether a relation means the same with left and right swapped."""
+    shares: dict[tuple[float, float], float] = defaultdict(float)
+    mirrored: dict[tuple[float, float], float] = defaultdict(float)
+    for share, term in relation.terms:
+        match term.angle:
+            case Normal(mean=mean, deviation=deviation):
+                shares[_turned(mean.value), deviation.value] += share
+                mirrored[_turned(-mean.value), deviation.value] += share
+            case Uniform(low=low, high=high) if high.value - low.value < TURN:
+                middle, width = (low.value + high.value) / 2.0, high.value - low.value
+                shares[_turned(middle), width] += share
+                mirrored[_turned(-middle), width] += share
+    return shares.keys() == mirrored.keys() and all(
+        abs(shares[key] - mirrored[key]) < _SLACK for key in shares
+    )
+
+
+def _turned(angle: float) -> float:
+    """Return an angle within one turn, rounded so that equal angles are equal."""
+    return round(round(angle / TURN, _DECIMALS) % 1.0, _DECIMALS)
+
+
+def disjunctions(linted: Linted) -> Iterator[Diagnostic]:
+    """Disjunctions about one pair of objects, where the alternatives of a belief were meant."""
+    for statement, formula in linted.formulas():
+        parts = formula.parts if isinstance(formula, And) else (formula,)
+        for disjunction in (part for part in parts if isinstance(part, Or)):
+            if _offers_alternatives(statement, disjunction, linted):
+                leaves_open = isinstance(statement, Require)
+                yield warning(
+                    "Q510",
+                    "a disjunction of alternatives for one pair",
+                    disjunction.span,
+                    "it leaves open which holds" if leaves_open else "each weighs the same",
+                    "give each its share: 'believe 0.3 :: … | 0.7 :: …'",
+                    edits=_as_belief(statement, disjunction),
+                )
+
+
+def _offers_alternatives(statement: Statement, disjunction: Or, linted: Linted) -> bool:
+    """Whether a disjunction speaks of one pair, and, where it is required, whether its parts exclude each other."""
+    pairs = {tuple(one.text for one in atom.arguments) for atom in atoms_of(disjunction)}
+    negates = any(isinstance(part, Not) for part in _unnegated(disjunction))
+    if isinstance(statement, Believe) or len(pairs) > 1 or negates:
+        return False
+    return not isinstance(statement, Require) or _are_exclusive(disjunction, linted)
+
+
+def _are_exclusive(disjunction: Or, linted: Linted) -> bool:
+    names = [part.relation.text for part in disjunction.parts if isinstance(part, Atom)]
+    relations = linted.symbols.relations
+    pairs = ((relations.get(one), other) for one, other in combinations(names, 2))
+    return len(names) == len(disjunction.parts) and all(one and other in one.disjoint for one, other in pairs)
+
+
+def _as_belief(statement: Statement, disjunction: Or) -> tuple[Edit, ...]:
+    """Return the edit that makes a belief with equal shares of an observation that is the disjunction alone."""
+    match statement:
+        case Observe(count=1.0, fit=None, formula=Or()):
+            alternatives = " | ".join(print_formula(part) for part in disjunction.parts)
+            return without_comments(Edit(statement.span, f"believe {alternatives}"))
+    return ()
+
+
+def _unnegated(formula: Formula) -> Iterator[Formula]:
+    """Yield a formula and its parts, but nothing inside a negation."""
+    waiting = [formula]
+    while waiting:
+        part = waiting.pop()
+        yield part
+        if isinstance(part, And | Or):
+            waiting += reversed(part.parts)
