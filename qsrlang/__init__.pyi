@@ -1,12 +1,14 @@
 from .errors import (
     BlockedPoseError,
     FileError,
+    ImpossibleConditionError,
     MissingFacingError,
     NoNavigablePoseError,
     NoRoomError,
     OutsideMapError,
     QSRError,
     TooManyWorldsError,
+    UnansweredQueryError,
     UnknownNameError,
     UnreachedTargetError,
     ValueRangeError,
@@ -22,8 +24,10 @@ from .experiments.trials import Trial
 from .geometry.angles import relative_angle
 from .geometry.pose import Pose2
 from .geometry.viewcone import Sector, Triangle, ViewCone
-from .language.diagnostics import Diagnostic, LanguageError
-from .language.parser import parse, parse_landmark, parse_place, parse_query
+from .language.diagnostics import Diagnostic, Diagnostics, Edit, LanguageError
+from .language.formatter import format_source
+from .language.parser import parse, parse_formula, parse_landmark, parse_place, parse_query
+from .language.printer import print_document, print_query
 from .maps.mapping import VoxelMapper
 from .maps.navigation import NavigationGrid, occupancy_from_voxels
 from .maps.occupancy import Cell, OccupancyGrid
@@ -34,7 +38,8 @@ from .maps.supports import Supports, find_supports
 from .maps.voxels import VoxelGrid
 from .mixtures.answers import Component, Where
 from .mixtures.gaussian import GaussianMixture
-from .mixtures.queries import KnowledgeBase, load, parse_knowledge
+from .mixtures.probability import Probability
+from .mixtures.queries import Answer, KnowledgeBase, load, parse_knowledge
 from .planning.belief import voxel_weights
 from .planning.loop import search_world
 from .planning.outcome import Limits, SearchResult, SearchStep
@@ -51,7 +56,11 @@ from .plotting.mixtures import draw_mixture
 from .plotting.statistics import draw_found_by_time
 from .plotting.steps import draw_search_step
 from .plotting.voxels import draw_voxels
+from .relations.algebra import compose, converse, neighbours
+from .relations.checking import check, check_text
+from .relations.contexts import Circumstances
 from .relations.graph import Landmark, RelationGraph
+from .relations.qualify import TPCC, direction_of, qualify
 from .resources import data_root
 from .simulation.objects import Placement
 from .simulation.picture import scene_picture
@@ -61,20 +70,26 @@ from .simulation.survey import survey_room
 from .simulation.world import PybulletWorld
 
 __all__ = [
+    "TPCC",
+    "Answer",
     "ArmSummary",
     "BeliefPlanner",
     "BlockedPoseError",
     "Camera",
     "Cell",
+    "Circumstances",
     "Comparison",
     "Component",
     "Detection",
     "Diagnostic",
+    "Diagnostics",
     "DistanceField",
     "Drive",
+    "Edit",
     "Experiment",
     "FileError",
     "GaussianMixture",
+    "ImpossibleConditionError",
     "Interval",
     "KnowledgeBase",
     "Landmark",
@@ -92,6 +107,7 @@ __all__ = [
     "Placement",
     "Planner",
     "Pose2",
+    "Probability",
     "PybulletWorld",
     "QSRError",
     "QSRPlanner",
@@ -110,6 +126,7 @@ __all__ = [
     "Trial",
     "TrialSeeds",
     "Triangle",
+    "UnansweredQueryError",
     "UnknownNameError",
     "UnreachedTargetError",
     "ValueRangeError",
@@ -118,8 +135,13 @@ __all__ = [
     "VoxelMapper",
     "Where",
     "World",
+    "check",
+    "check_text",
     "compare",
+    "compose",
+    "converse",
     "data_root",
+    "direction_of",
     "draw_answer",
     "draw_found_by_time",
     "draw_map",
@@ -128,17 +150,23 @@ __all__ = [
     "draw_story",
     "draw_voxels",
     "find_supports",
+    "format_source",
     "in_view",
     "load",
     "load_room",
     "load_scenario",
+    "neighbours",
     "occupancy_from_voxels",
     "open_search",
     "parse",
+    "parse_formula",
     "parse_knowledge",
     "parse_landmark",
     "parse_place",
     "parse_query",
+    "print_document",
+    "print_query",
+    "qualify",
     "read_octomap",
     "read_ros_map",
     "relative_angle",

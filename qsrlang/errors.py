@@ -11,6 +11,7 @@
   + UnreachedTargetError      a target that no chain of relations ties to a landmark
   + MissingFacingError        a landmark without a heading where a frame of reference needs one
   + NoRoomError               relations that leave no room on their support
+  + ImpossibleConditionError  an assumption or requirement that no possible scene meets
   + TooManyWorldsError        knowledge with more combinations than the named limit
   + UnansweredQueryError      a query that can be written but that this release does not answer
 """
@@ -133,12 +134,21 @@ class TooManyWorldsError(QSRError):
         )
 
 
+class ImpossibleConditionError(QSRError):
+    """What is given or required, and how many draws did not meet it."""
+
+    def __init__(self, conditions: Sequence[str], draws: int) -> None:
+        self.conditions, self.draws = tuple(conditions), draws
+        what = " and ".join(self.conditions) or "what is known"
+        super().__init__(f"{what}: this held in none of {draws} draws; assume less, or draw more")
+
+
 class UnansweredQueryError(QSRError):
-    """A query that can be written but that this release does not answer: its verb, or its `given`."""
+    """A query that can be written but that this release does not answer, by its verb."""
 
     def __init__(self, verb: str) -> None:
         self.verb = verb
         super().__init__(
-            f"'{verb}' is not answered by this release; ask 'where', perhaps with 'wrt', 'in' and 'at', "
+            f"'{verb}' is not answered by this release; ask 'where' or 'prob', "
             "as in 'where Cup wrt Keyboard in room kitchen at 09:30?'"
         )

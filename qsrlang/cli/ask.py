@@ -19,8 +19,10 @@ def ask(
     landmark: Landmarks = None,
     viewer: Viewer = None,
     engine: Annotated[str, typer.Option(help="exact (moments), or sampling as in the paper.")] = "exact",
-    samples: Annotated[int, typer.Option(min=2, help="Draws of the sampling engine.")] = 10_000,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of the sampling engine.")] = 0,
+    samples: Annotated[
+        int, typer.Option(min=2, help="Draws of the sampling engine, of 'prob', and under assumptions.")
+    ] = 10_000,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of all draws.")] = 0,
     output: OutputFormat = Format.TEXT,
 ) -> None:
     """Ask what a .qsr file says, such as 'where Cup?'."""
@@ -29,7 +31,7 @@ def ask(
     if output is Format.JSON:
         typer.echo(json.dumps(answer.to_json(), ensure_ascii=False, indent=2))
     else:
-        print_answer(answer, Console(), f"where {answer.target}")
+        print_answer(answer, Console(), " ".join(query.split()).removesuffix("?").rstrip())
 
 
 def viewer_pose(text: str | None) -> qsr.Pose2 | None:

@@ -9,7 +9,18 @@ import typer
 
 from qsrlang.errors import QSRError
 
-VERBS = ("check", "ask", "plot", "search", "compare")
+VERBS = (
+    "check",
+    "fmt",
+    "lint",
+    "ask",
+    "repl",
+    "plot",
+    "search",
+    "compare",
+    "lsp",
+    "explain-error",
+)
 MISUSED = 2
 INTERRUPTED = 130
 
@@ -36,7 +47,8 @@ def build_app(words: list[str]) -> typer.Typer:
         pretty_exceptions_enable=False,
     )
     for verb in words[:1] if words[:1] and words[0] in VERBS else VERBS:
-        app.command(verb)(getattr(import_module(f"qsrlang.cli.{verb}"), verb))
+        name = verb.replace("-", "_")
+        app.command(verb)(getattr(import_module(f"qsrlang.cli.{name}"), name))
     return app
 
 

@@ -22,6 +22,8 @@ def plot(
     """Draw what a .qsr file says, such as 'where Cup wrt Keyboard?'."""
     known = qsr.load(file).with_landmarks(*(landmark or ()))
     answer = known.ask(query, viewer=viewer_pose(viewer))
+    if not isinstance(answer, qsr.Where):
+        raise qsr.ValueRangeError("the query to draw", query, "a 'where', such as 'where Cup wrt Keyboard?'")
     written = qsr.save_figure(qsr.draw_answer(answer, known), picture)
     typer.echo(
         f"{written}: where {answer.target}, {len(answer.components)} components, frame: {answer.frame}"

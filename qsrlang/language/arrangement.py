@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 
 from qsrlang.language.layout import Break, Close, Open, Part, lay_out
-from qsrlang.language.spelling import Remark, Spelling, Token, blank_between
+from qsrlang.language.sentence import Remark, Sentence, Token
+from qsrlang.language.spelling import Spelling, blank_between
 
 MAX_GROUPS = 24
-
-_CLOSERS = {"LPAR": "RPAR", "LBRACE": "RBRACE"}
 
 
 def arrange(tokens: Sequence[Token], spelling: Spelling, indent: int = 0) -> tuple[str, tuple[Remark, ...]]:
@@ -22,7 +21,7 @@ def arrange(tokens: Sequence[Token], spelling: Spelling, indent: int = 0) -> tup
 
 
 def on_one_line(tokens: Sequence[Token], spelling: Spelling) -> str:
-    """Return the words of a statement or a query on one line."""
+    """Return the words of a statement on one line."""
     parts = [tokens[0].text]
     for left, right in pairwise(tokens):
         parts += (blank_between(left.kind, right.kind, spelling), right.text)
@@ -38,9 +37,8 @@ class _Arrangement:
 
     def __init__(self, tokens: Sequence[Token], spelling: Spelling) -> None:
         self.parts: list[Part] = []
-        self._tokens, self._spelling = tokens, spelling
-        self._ends = _bracket_ends(tokens)
-        self._last = len(tokens) - 1
+        self._sentence, self._spelling = Sentence(tokens), spelling
+        self._last = self._sentence.last
         self._depth = 0
         self._pending: list[Remark] = []
         self._break: Break | None = None
@@ -48,73 +46,66 @@ class _Arrangement:
 
     def statement(self) -> None:
         """Put together all but the last word."""
-        kind = self._tokens[0].kind
-        arranged: Callable[[], None] = {
-            "DECLARE": self._declaration,
-            "BELIEVE": self._belief,
-            "SCENE": self._scene,
-            "OBSERVE": self._claim,
-            "REQUIRE": self._claim,
-            "LANDMARK": self._landmark,
-            "IN": self._context_head,
-        }.get(kind, self._plain)
-        arranged()
+        match self._sentence.tokens[0].kind:
+            case "DECLARE" | "IN":
+                self._listed(self._words, "COMMA")
+            case "BELIEVE":
+                self._listed(self._alternative, "VBAR")
+            case "SCENE":
+                self._scene()
+            case "OBSERVE" | "REQUIRE":
+                self._claim()
+            case "LANDMARK":
+                self._landmark()
+            case _:
+                self._words(0, self._last)
 
     def finish(self) -> tuple[Remark, ...]:
         """Put the last word, and return the comments that go behind it; a doc comment must stay before it."""
-        token = self._tokens[self._last]
+        token = self._sentence.tokens[self._last]
         self._pending += token.before.remarks
         if any(remark.documents for remark in self._pending):
             self._may_end()
         self.parts.append(f"{self._take_break(token)}{token.text}")
         return tuple(self._pending)
 
-    def _plain(self) -> None:
-        self._words(0, self._last)
-
-    def _declaration(self) -> None:
-        self._listed(self._words, "COMMA")
-
-    def _belief(self) -> None:
-        self._listed(self._alternative, "VBAR")
-
-    def _context_head(self) -> None:
-        self._listed(self._words, "COMMA")
-
     def _listed(self, item: Callable[[int, int], None], separator: str) -> None:
         """A keyword, then items below each other if there are several and they were written so or do not fit."""
         self._words(0, 1)
-        if self._find(1, self._last, separator) == self._last:
+        *ends, _ = (end for _, end in self._sentence.split(1, self._last, separator))
+        if not ends:
             item(1, self._last)
             return
-        ends = [end for _, end in self._split(1, self._last, separator)][:-1]
-        broken = all(self._line_ends_at(end) or self._line_ends_at(end + 1) for end in ends)
+        new_line = self._sentence.line_ends_before
+        broken = all(new_line(end) or new_line(end + 1) for end in ends)
         self._align(Open(None, broken=broken))
         self._items(1, self._last, separator, item)
         self._close()
 
     def _alternative(self, start: int, end: int) -> None:
         self._open(Open())
-        fit = self._find(start, end, "TILDE")
-        formula = self._behind("COLONS", start, fit)
+        fit = self._sentence.find(start, end, "TILDE")
+        formula = self._sentence.behind("COLONS", start, fit)
         self._words(start, formula)
         self._formula(formula, fit)
         self._fit(fit, end)
         self._close()
 
     def _scene(self) -> None:
-        formula = self._behind("IFF", 0, self._last)
+        formula = self._sentence.behind("IFF", 0, self._last)
         self._words(0, formula)
-        self._open(Open(broken=self._line_ends_at(formula)))
+        self._open(Open(broken=self._sentence.line_ends_before(formula)))
         self._may_end(tight=True)
         self._formula(formula, self._last)
         self._close()
 
     def _claim(self) -> None:
         """`observe 3 × formula ~ fit` or `require 0.9 :: formula`: several atoms begin on a line of their own."""
-        fit = self._find(0, self._last, "TILDE")
-        formula = max(1, *(self._behind(kind, 0, fit) for kind in ("TIMES", "COLONS")))
-        several = self._has(formula, fit, "AND", "OR") or bool(self._tokens[formula].before.remarks)
+        fit = self._sentence.find(0, self._last, "TILDE")
+        formula = max(1, *(self._sentence.behind(kind, 0, fit) for kind in ("TIMES", "COLONS")))
+        several = self._sentence.has(formula, fit, "AND", "OR") or bool(
+            self._sentence.tokens[formula].before.remarks
+        )
         self._words(0, formula if several else fit)
         self._open(Open())
         if several:
@@ -125,8 +116,8 @@ class _Arrangement:
 
     def _landmark(self) -> None:
         self._open(Open())
-        for at in self._units(0, self._last):
-            if self._tokens[at].kind in ("AT", "FACING", "PLUSMINUS"):
+        for at in self._sentence.units(0, self._last):
+            if self._sentence.tokens[at].kind in ("AT", "FACING", "PLUSMINUS"):
                 self._may_end()
             self._unit(at)
         self._close()
@@ -138,7 +129,7 @@ class _Arrangement:
 
     def _formula(self, start: int, end: int) -> None:
         """A formula, with a break behind each connective of its lowest rank."""
-        if self._has(start, end, "OR"):
+        if self._sentence.has(start, end, "OR"):
             self._items(start, end, "OR", self._conjunction)
         else:
             self._items(start, end, "AND", self._words)
@@ -150,36 +141,37 @@ class _Arrangement:
 
     def _items(self, start: int, end: int, separator: str, item: Callable[[int, int], None]) -> None:
         """Items with a separator behind each but the last, and a break behind each separator."""
-        for first, last in self._split(start, end, separator):
+        for first, last in self._sentence.split(start, end, separator):
             item(first, last)
             if last < end:
                 self._word(last)
                 self._may_end()
 
     def _words(self, start: int, end: int) -> None:
-        for at in self._units(start, end):
+        for at in self._sentence.units(start, end):
             self._unit(at)
 
     def _unit(self, at: int) -> None:
         """One word, or brackets with all between them."""
-        if at not in self._ends:
-            self._word(at)
-            return
-        end = self._ends[at]
+        end = self._sentence.bracket_end(at)
         self._word(at)
+        if end is None:
+            return
         if self._depth < MAX_GROUPS:
             self._depth += 1
-            self._bracketed(at + 1, end, self._tokens[at].kind == "LPAR")
+            self._bracketed(at + 1, end)
             self._depth -= 1
         else:
             for inner in range(at + 1, end):
                 self._word(inner)
         self._word(end)
 
-    def _bracketed(self, start: int, end: int, round: bool) -> None:
+    def _bracketed(self, start: int, end: int) -> None:
         """What stands between brackets; plain items between round ones fill their lines."""
-        is_formula = self._has(start, end, "AND", "OR")
-        self._open(Open(filled=round and not is_formula and not self._has(start, end, *_CLOSERS)))
+        sentence = self._sentence
+        is_formula = sentence.has(start, end, "AND", "OR")
+        is_plain = not is_formula and not sentence.has_brackets(start, end)
+        self._open(Open(filled=is_plain and sentence.tokens[end].kind == "RPAR"))
         self._may_end(tight=True)
         if is_formula:
             self._formula(start, end)
@@ -189,7 +181,7 @@ class _Arrangement:
         self._close()
 
     def _word(self, at: int) -> None:
-        token = self._tokens[at]
+        token = self._sentence.tokens[at]
         self._pending += token.before.remarks
         if self._break is not None:
             self._break.blank = token.before.blank
@@ -219,45 +211,3 @@ class _Arrangement:
 
     def _close(self) -> None:
         self.parts.append(Close.GROUP)
-
-    def _line_ends_at(self, at: int) -> bool:
-        return self._tokens[at].before.line_end
-
-    def _units(self, start: int, end: int) -> Iterator[int]:
-        """Yield the places from start up to end that are in no inner brackets."""
-        at = start
-        while at < end:
-            yield at
-            at = self._ends.get(at, at) + 1
-
-    def _split(self, start: int, end: int, separator: str) -> Iterator[tuple[int, int]]:
-        first = start
-        for at in self._units(start, end):
-            if self._tokens[at].kind == separator:
-                yield first, at
-                first = at + 1
-        yield first, end
-
-    def _find(self, start: int, end: int, *kinds: str) -> int:
-        """Return the first place in no inner brackets that holds a word of these kinds; the end if there is none."""
-        return next((at for at in self._units(start, end) if self._tokens[at].kind in kinds), end)
-
-    def _behind(self, kind: str, start: int, end: int) -> int:
-        """Return the place behind the first word of a kind; the start if there is none."""
-        at = self._find(start, end, kind)
-        return at + 1 if at < end else start
-
-    def _has(self, start: int, end: int, *kinds: str) -> bool:
-        return self._find(start, end, *kinds) < end
-
-
-def _bracket_ends(tokens: Sequence[Token]) -> dict[int, int]:
-    """Return where each opening bracket is closed; the brace that opens a context is not."""
-    opened: list[int] = []
-    ends = {}
-    for at, token in enumerate(tokens):
-        if token.kind in _CLOSERS:
-            opened.append(at)
-        elif token.kind in _CLOSERS.values():
-            ends[opened.pop()] = at
-    return ends

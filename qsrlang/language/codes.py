@@ -51,7 +51,6 @@ CODES = {
     "Q511": "a class without a capital",
     "Q512": "characters that change the order of the text",
     "Q513": "cyclic anchoring",
-    "Q514": "a requirement that does not yet change answers",
     "Q515": "atoms that contradict each other",
     "Q601": "a statement that another overrides",
 }

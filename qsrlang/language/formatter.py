@@ -9,8 +9,9 @@ from qsrlang.language.arrangement import arrange, on_one_line
 from qsrlang.language.layout import INDENT, WIDTH
 from qsrlang.language.lexing import Word
 from qsrlang.language.parser import words_of
+from qsrlang.language.sentence import NO_GAP, Gap, Remark, Token, read_gap
 from qsrlang.language.source import Source
-from qsrlang.language.spelling import LANDMARK_COLON, SIGNS, Interval, Remark, Spelling, Token, interval
+from qsrlang.language.spelling import LANDMARK_COLON, SIGNS, Spelling
 from qsrlang.language.splitting import Kind, Piece, skip_blank, split
 
 _LINE_ENDS = re.compile(r"\r+\n")
@@ -41,7 +42,7 @@ class _Page:
     def take(self, piece: Piece) -> None:
         """Add a piece with all that stands before it."""
         gap = self._text[self._at : piece.span.start]
-        between = interval(gap)
+        between = read_gap(gap)
         if piece.kind is Kind.CONTEXT_END:
             self._end_context(between, piece.span.end)
             return
@@ -55,14 +56,14 @@ class _Page:
         lines, rest = formatted or (self._text[piece.span.start : self._at], ())
         self._put(lines, between.blank)
         self._unread = unread
-        self._remark(rest)
         if piece.kind is Kind.CONTEXT_HEAD:
             self._depth += 1
             self._opened = True
+        self._remark(rest)
 
     def finish(self) -> str:
         """Add the comments at the end, and return the text."""
-        self._remark(interval(self._text[self._at :]).remarks)
+        self._remark(read_gap(self._text[self._at :]).remarks)
         return "\n".join([*self._lines, ""]) if self._lines else ""
 
     def _end_of(self, piece: Piece) -> int:
@@ -89,16 +90,16 @@ class _Page:
         signs, text, at = SIGNS[self._spelling], self._text, piece.span.start
         tokens = []
         for word in words:
-            before = Interval() if plain or word.start_pos == at else interval(text[at : word.start_pos])
+            before = NO_GAP if plain or word.start_pos == at else read_gap(text[at : word.start_pos])
             tokens.append(Token(word.type, signs.get(word.type, word.value), before))
             at = word.end_pos
         if words[0].type == "LANDMARK":
             tokens[2] = Token(LANDMARK_COLON, ":", tokens[2].before)
         if piece.end:
-            tokens.append(Token("DOT", piece.end, interval(text[at : self._at - 1])))
+            tokens.append(Token("DOT", piece.end, read_gap(text[at : self._at - 1])))
         return tokens
 
-    def _end_context(self, between: Interval, end: int) -> None:
+    def _end_context(self, between: Gap, end: int) -> None:
         """Close a context; a full stop behind it is left out where nothing would be read differently without it."""
         empty = self._opened and not between.remarks and bool(self._lines) and not self._remarked
         self._remark(between.remarks)
@@ -112,7 +113,7 @@ class _Page:
         stop = skip_blank(self._text, end)
         if not self._text.startswith(".", stop):
             return
-        behind = interval(self._text[end:stop]).remarks
+        behind = read_gap(self._text[end:stop]).remarks
         self._remark(behind)
         self._at = stop + 1
         if self._text.startswith(".", skip_blank(self._text, self._at)) or any(

@@ -27,6 +27,7 @@ from qsrlang.language.statements import (
     Scene,
     Statement,
 )
+from qsrlang.language.syntax import Formula
 from qsrlang.language.unexpected import QUERIES_ELSEWHERE, Rest, explain, rest_after_missing_stop
 
 LANGUAGE_VERSION = 1
@@ -88,6 +89,12 @@ def parse_query(text: str) -> Query:
     closed = text if text.rstrip().endswith("?") else text.rstrip() + "?"
     query: Query = _parse_alone(closed, "query", "<query>")
     return query
+
+
+def parse_formula(text: str) -> Formula:
+    """Parse one formula, such as `left-of(Cup, Keyboard) ∧ ¬close-to(Cup, Keyboard)`."""
+    formula: Formula = _parse_alone(f"prob {text}?", "query", "<formula>").formula
+    return formula
 
 
 def parse_landmark(text: str) -> Landmark:

@@ -58,7 +58,7 @@ def _share(slip: Slip) -> Remedy | None:
 
 
 def _no_connective(slip: Slip) -> Remedy | None:
-    beside = slip.is_name and slip.before == ")"
+    beside = slip.before == ")" and slip.is_applied
     if "AND" not in slip.accepted or not (slip.word == "," or beside):
         return None
     if "VBAR" in slip.accepted:
@@ -88,6 +88,12 @@ def _count(slip: Slip) -> Remedy | None:
     return Remedy("write a '×' after the count", slip.edit("× ", 0)) if NAME.match(slip.word) else None
 
 
+def _fact(slip: Slip) -> Remedy | None:
+    if not (slip.starts and slip.is_applied):
+        return None
+    return Remedy(f"say how it is known: 'observe {slip.word}(…)' or 'believe {slip.word}(…)'")
+
+
 def _context(slip: Slip) -> Remedy | None:
     if slip.starts and slip.word == "in":
         return Remedy("a context has its statements in braces: in room kitchen { … }")
@@ -96,15 +102,9 @@ def _context(slip: Slip) -> Remedy | None:
     return None
 
 
-def _fact(slip: Slip) -> Remedy | None:
-    if not (slip.starts and slip.is_name and slip.after.startswith("(")):
-        return None
-    return Remedy(f"say how it is known: 'observe {slip.word}(…)' or 'believe {slip.word}(…)'")
-
-
 def _infix(slip: Slip) -> Remedy | None:
     relatum = NAME.match(slip.after.lstrip())
-    if "LPAR" not in slip.accepted or relatum is None or not (slip.is_name and NAME.fullmatch(slip.before)):
+    if "LPAR" not in slip.accepted or relatum is None or not (NAME.match(slip.word) and NAME.fullmatch(slip.before)):
         return None
     return Remedy(f"the relation comes first: {slip.word}({slip.before}, {relatum.group()})")
 
@@ -215,8 +215,8 @@ _RULES: tuple[Callable[[Slip], Remedy | None], ...] = (
         _sign,
         _word,
         _count,
-        _context,
         _fact,
+        _context,
         _infix,
     ),
     *(_bare_name, _odd_name, _quotes, _frame, _direction, _time, _closing, _keyword, _two_names, _run_on),

@@ -103,6 +103,11 @@ class Slip:
         return self.place.source.text[self.place.end : self.whole.end]
 
     @property
+    def is_applied(self) -> bool:
+        """Whether it is a word with arguments after it, as relations are."""
+        return bool(NAME.fullmatch(self.word)) and self.after.startswith("(")
+
+    @property
     def is_name(self) -> bool:
         """Whether the word could be a name of the user's."""
         return bool(NAME.fullmatch(self.word)) and self.word not in keywords()

@@ -51,7 +51,7 @@ class Piece:
         text = self.span.source.text
         if text.find("##", self.lead, self.span.start) < 0:
             return ""
-        lines = text[self.lead : self.span.start].splitlines()
+        lines = text[self.lead : self.span.start].split("\n")
         return "\n".join(line.strip()[2:].strip() for line in lines if line.lstrip().startswith("##"))
 
 

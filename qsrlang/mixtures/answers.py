@@ -33,7 +33,8 @@ class Where:
     """Where a target is: p(x) = (1 - elsewhere) x mixture(x) + elsewhere, spread over what no statement names.
 
     `frame` is "map", or the class the mixture is relative to (x away from the viewer, y to its left).
-    Component weights sum to 1 - elsewhere; those of `mixture` to 1.
+    Component weights sum to 1 - elsewhere; those of `mixture` to 1. `assumed` are the texts of what was given or
+    required; the answer then comes from draws, `draws` of which would be as good if they were independent.
     """
 
     target: str
@@ -41,6 +42,8 @@ class Where:
     mixture: GaussianMixture
     elsewhere: float
     components: tuple[Component, ...]
+    assumed: tuple[str, ...] = ()
+    draws: float | None = None
 
     @property
     def weights(self) -> FloatArray:
@@ -73,6 +76,8 @@ class Where:
             "frame": self.frame,
             "elsewhere": self.elsewhere,
             "components": components,
+            "assumed": list(self.assumed),
+            "effective_draws": self.draws,
         }
 
     def __str__(self) -> str:

@@ -41,17 +41,18 @@ class PolarConditional:
 
     def moments(self, states: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return mean (P, 2) and covariance (P, 2, 2) of x."""
-        return self.density.moments(self._stance(states))
+        return self.density.moments(self.stance(states))
 
     def sample(self, states: FloatArray, rng: np.random.Generator) -> FloatArray:
         """Return one draw (P, 2) from each state."""
-        return self.density.sample(self._stance(states), rng)
+        return self.density.sample(self.stance(states), rng)
 
     def pdf(self, points: FloatArray, states: FloatArray) -> FloatArray:
         """Return the density (P,) of one point (P, 2) per state [1/m^2]."""
-        return self.density.pdf(points, self._stance(states))
+        return self.density.pdf(points, self.stance(states))
 
-    def _stance(self, states: FloatArray) -> Stance:
+    def stance(self, states: FloatArray) -> Stance:
+        """Return where the relatum stands in each state."""
         stand = self.standpoint
         axes = np.stack([stand.axes(states, frame) for frame in self.frames], axis=-1)
         support = None if stand.support is None else stand.support.poses(states)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -27,20 +27,20 @@ class Engine:
     samples: int = 0
     rng: np.random.Generator | None = None
 
-    def place(self, graph: RelationGraph, plan: Plan, viewer: Pose2 | None) -> Placement:
-        """Return where a plan puts its target."""
+    def place(self, graph: RelationGraph, plan: Plan, target: str, viewer: Pose2 | None) -> Placement:
+        """Return where a plan puts the target."""
         if self.rng is None:
-            return place_exactly(graph, plan, viewer)
-        return place_by_sampling(graph, plan, viewer, self.samples, self.rng)
+            return place_exactly(graph, plan, target, viewer)
+        return place_by_sampling(graph, plan, target, viewer, self.samples, self.rng)
 
 
 def where_on_map(graph: RelationGraph, target: str, viewer: Pose2 | None, engine: Engine) -> Where:
     """Return where a target is in the map frame; raises UnreachedTargetError, NoRoomError and MissingFacingError."""
     plans = ((world, plan_world(graph, world, target)) for world in enumerate_worlds(graph, target))
     placed = [
-        (world, engine.place(graph, plan, viewer))
+        (world, engine.place(graph, plan, world.named(target), viewer))
         for world, plan in plans
-        if plan is not None and world.weight > 0.0
+        if world.named(target) in plan.seats and world.weight > 0.0
     ]
     if not placed:
         raise UnreachedTargetError(target, broken_chains(graph, target))
@@ -51,22 +51,40 @@ def where_on_map(graph: RelationGraph, target: str, viewer: Pose2 | None, engine
         for weight, (_, placement) in zip(weights, placed, strict=True)
     ]
     components.sort(key=lambda component: (-component.weight, *component.mean))
-    return Where(target, "map", _mixture(components), max(0.0, 1.0 - claimed), tuple(components))
+    return Where(target, "map", mixture_of(components), max(0.0, 1.0 - claimed), tuple(components))
 
 
-def where_relative_to(graph: RelationGraph, target: str, relatum: str, engine: Engine) -> Where:
-    """Return where a target is with the relatum at the origin, the viewer's axis along +x, and no other landmark."""
+def alone_with(graph: RelationGraph, relatum: str) -> RelationGraph:
+    """Return the graph with the relatum at the origin, the viewer's axis along +x, and no other landmark."""
     virtual = Landmark(relatum, graph.class_of(relatum), 0.0, 0.0, heading=math.pi)
-    answer = where_on_map(replace(graph, landmarks=(virtual,)), target, None, engine)
-    return replace(answer, frame=relatum)
+    return replace(graph, landmarks=(virtual,))
 
 
-def where_relative(graph: RelationGraph, target: str, engine: Engine) -> Where:
-    """Return where a target is relative to the class, of those its chains start from, that tells the most."""
+def rooted(graph: RelationGraph, names: Sequence[str]) -> RelationGraph:
+    """Return the graph; where no landmark is known, with the one class at the origin that all names hang on.
+
+    Raises UnreachedTargetError where they hang on several.
+    """
+    if graph.landmarks:
+        return graph
+    starts = dict.fromkeys(start for name in names for start in chain_starts(graph, name) or (name,))
+    if len(starts) != 1:
+        raise UnreachedTargetError(" and ".join(names), [f"{start} has no landmark" for start in starts])
+    return alone_with(graph, *starts)
+
+
+def in_frame(
+    graph: RelationGraph, target: str, wrt: str | None, solve: Callable[[RelationGraph], Where]
+) -> Where:
+    """Return an answer on the map; with `wrt`, relative to that; where no landmark is known, relative to the class,
+    of those the target's chains start from, that tells the most.
+    """
+    if wrt is None and graph.landmarks:
+        return solve(graph)
     answers, failures = [], []
-    for relatum in chain_starts(graph, target):
+    for relatum in chain_starts(graph, target) if wrt is None else (wrt,):
         try:
-            answers.append(where_relative_to(graph, target, relatum, engine))
+            answers.append(replace(solve(alone_with(graph, relatum)), frame=relatum))
         except UnreachedTargetError as error:
             failures.append(error)
     if not answers:
@@ -74,7 +92,8 @@ def where_relative(graph: RelationGraph, target: str, engine: Engine) -> Where:
     return max(answers, key=lambda answer: 1.0 - answer.elsewhere)
 
 
-def _mixture(components: Sequence[Component]) -> GaussianMixture:
+def mixture_of(components: Sequence[Component]) -> GaussianMixture:
+    """Return components as a mixture, their weights normalised."""
     shares = np.array([component.weight for component in components])
     means = np.array([component.mean for component in components])
     covariances = np.array([component.covariance for component in components])

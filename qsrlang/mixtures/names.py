@@ -14,7 +14,7 @@ def check_question(question: Query, graph: RelationGraph) -> None:
     """Raise UnknownNameError for a name nothing bears, ValueRangeError for an atom with too many or few arguments."""
     for part in _parts(question):
         if isinstance(part, Atom):
-            _check_atom(part, graph)
+            check_atom(part, graph)
         else:
             check_object(part.text, graph)
 
@@ -43,7 +43,8 @@ def _parts(question: Query) -> Iterator[Argument | Atom]:
         yield from atoms_of(question.given)
 
 
-def _check_atom(atom: Atom, graph: RelationGraph) -> None:
+def check_atom(atom: Atom, graph: RelationGraph) -> None:
+    """Raise UnknownNameError for a name nothing bears, ValueRangeError for too many or few arguments."""
     relation = graph.relations.get(atom.relation.text)
     if relation is None:
         raise UnknownNameError("relation", atom.relation.text, graph.relations)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from qsrlang.mixtures.supports import Seat, Support, in_region, support_of
@@ -25,22 +26,21 @@ class Step:
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """The landmarks of a world, the steps that place its objects, and the block of the state that is the target.
+    """The landmarks of a world, the steps that place its objects, and where each object sits in the state.
 
     `constraints` are those that the steps come from, and the regions that bound their distances.
     """
 
     landmarks: tuple[Landmark, ...]
     steps: tuple[Step, ...]
-    target: str
+    seats: Mapping[str, Seat]
     constraints: tuple[Constraint, ...]
 
 
-def plan_world(graph: RelationGraph, world: World, target: str) -> Plan | None:
-    """Return how a world places the target, or None where no chain of it reaches a landmark."""
-    target = world.named(target)
+def plan_world(graph: RelationGraph, world: World, *targets: str) -> Plan:
+    """Return how a world places targets; those that no chain of it ties to a landmark have no seat."""
     seats = {name: Seat(landmark.name, landmark) for name, landmark in world.bindings}
-    waiting = [constraint for constraint in _helpful(world, target) if constraint.referent not in seats]
+    waiting = [constraint for constraint in _helpful(world, targets) if constraint.referent not in seats]
     helpful = tuple(waiting)
     used: list[Constraint] = []
     steps: list[Step] = []
@@ -51,12 +51,10 @@ def plan_world(graph: RelationGraph, world: World, target: str) -> Plan | None:
         if not _bounds_already(constraint, seats, steps):
             steps.append(_step(graph, constraint, helpful, seats))
         seats.setdefault(constraint.referent, Seat(constraint.referent, seats[constraint.relatum].root))
-    if target not in seats:
-        return None
     known = [landmark for _, landmark in world.bindings]
     known += [step.support.seat.root for step in steps if step.support]
     landmarks = tuple({one.name: one for one in known}.values())
-    return Plan(landmarks, tuple(steps), seats[target].block, tuple(used))
+    return Plan(landmarks, tuple(steps), seats, tuple(used))
 
 
 def _delay(constraint: Constraint, waiting: list[Constraint]) -> int:
@@ -68,7 +66,7 @@ def _delay(constraint: Constraint, waiting: list[Constraint]) -> int:
 
 
 def _step(
-    graph: RelationGraph, constraint: Constraint, others: tuple[Constraint, ...], seats: dict[str, Seat]
+    graph: RelationGraph, constraint: Constraint, others: tuple[Constraint, ...], seats: Mapping[str, Seat]
 ) -> Step:
     second = None if constraint.towards is None else seats[constraint.towards]
     support = support_of(graph, constraint, others, seats)
@@ -85,8 +83,14 @@ def _bounds_already(constraint: Constraint, seats: dict[str, Seat], steps: list[
     )
 
 
-def _helpful(world: World, target: str) -> list[Constraint]:
-    """Return the constraints that help to place the target, in an order that is always the same."""
-    needed = needed_for(target, world.constraints)
-    helpful = [constraint for constraint in world.constraints if constraint.referent in needed]
+def step_of(graph: RelationGraph, constraint: Constraint, seats: Mapping[str, Seat]) -> Step:
+    """Return a constraint between objects that sit already."""
+    return _step(graph, constraint, (), seats)
+
+
+def _helpful(world: World, targets: tuple[str, ...]) -> list[Constraint]:
+    """Return the constraints that help to place targets, in an order that is always the same."""
+    needed = needed_for([world.named(target) for target in targets], world.constraints)
+    absent = {world.named(name) for name in world.absent}
+    helpful = [one for one in world.constraints if one.referent in needed and one.referent not in absent]
     return sorted(helpful, key=lambda c: (c.referent, *c.relata))

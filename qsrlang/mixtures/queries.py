@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import TypeAlias
+from typing import TypeAlias, overload
 
 import numpy as np
 
@@ -13,17 +13,21 @@ from qsrlang.errors import UnansweredQueryError, UnknownNameError, ValueRangeErr
 from qsrlang.geometry.pose import Pose2
 from qsrlang.language import questions
 from qsrlang.language.diagnostics import Diagnostic, raise_errors
-from qsrlang.language.parser import parse_landmark, parse_query
+from qsrlang.language.parser import parse_formula, parse_landmark, parse_query
 from qsrlang.language.source import Source
+from qsrlang.language.syntax import Formula, atoms_of
 from qsrlang.mixtures.answers import Where
-from qsrlang.mixtures.inference import Engine, where_on_map, where_relative, where_relative_to
-from qsrlang.mixtures.names import check_object, check_question
+from qsrlang.mixtures.conditioning import Drawing, conditions_on, objects_of
+from qsrlang.mixtures.inference import Engine, in_frame, rooted, where_on_map
+from qsrlang.mixtures.names import check_atom, check_object, check_question
+from qsrlang.mixtures.probability import Probability, probability, where_assuming
 from qsrlang.relations.build import ANYWHERE, Built, build_graph
 from qsrlang.relations.contexts import Circumstances
 from qsrlang.relations.graph import Landmark, RelationGraph
 from qsrlang.relations.imports import find_knowledge, read_source
 from qsrlang.relations.values import landmark_value
 
+Answer: TypeAlias = Where | Probability
 Poses: TypeAlias = Mapping[str, Pose2 | Sequence[Pose2]]
 ENGINES = ("exact", "sampling")
 DEFAULT_SAMPLES = 10_000
@@ -81,6 +85,7 @@ class KnowledgeBase:
         landmarks: Poses | None = None,
         *,
         wrt: str | None = None,
+        given: str | Formula | None = None,
         viewer: Pose2 | None = None,
         engine: str = "exact",
         samples: int = DEFAULT_SAMPLES,
@@ -91,18 +96,42 @@ class KnowledgeBase:
         `target` is a class, a landmark or a role such as `left: Cup`; of a class that scenes tell apart by roles,
         any instance. `landmarks` maps classes and roles to poses; without any landmark, or with `wrt`, the mixture is
         relative to the class the chain starts from (x away from the viewer, y to its left). `engine="sampling"`
-        fits Gaussians to `samples` draws of `rng`, as the paper does. Raises UnreachedTargetError, NoRoomError and
-        MissingFacingError.
+        fits Gaussians to `samples` draws of `rng`, as the paper does. What is `given`, such as
+        `left-of(Cup, Keyboard)`, and what the knowledge requires of what the target depends on, is met by weighing
+        `samples` draws (of `rng`, or of a generator with seed 0). Raises UnreachedTargetError, NoRoomError,
+        MissingFacingError and ImpossibleConditionError.
         """
         for name in filter(None, (target, wrt)):
             check_object(name, self.graph)
         placing = _engine(engine, samples, rng)
         graph = self.with_landmarks(*_instances(landmarks or {}, self.graph)).graph
-        if wrt is not None:
-            return where_relative_to(graph, target, wrt, placing)
-        if graph.landmarks:
-            return where_on_map(graph, target, viewer, placing)
-        return where_relative(graph, target, placing)
+        conditions = conditions_on(graph, (target,), self._formula(given))
+        if not conditions:
+            return in_frame(graph, target, wrt, lambda known: where_on_map(known, target, viewer, placing))
+        drawing = Drawing(samples, rng or np.random.default_rng(0), viewer)
+        return in_frame(graph, target, wrt, lambda known: where_assuming(known, target, conditions, drawing))
+
+    def prob(
+        self,
+        formula: str | Formula,
+        given: str | Formula | None = None,
+        *,
+        viewer: Pose2 | None = None,
+        samples: int = DEFAULT_SAMPLES,
+        rng: np.random.Generator | None = None,
+    ) -> Probability:
+        """Return how probable a formula such as `right-of(Cup, Keyboard)` is, with its standard error.
+
+        It is the share of `samples` weighted draws (of `rng`, or of a generator with seed 0) in which the formula
+        holds, among those in which what is `given` and required does. Raises UnreachedTargetError where no landmark
+        is known and the objects hang on different classes, NoRoomError, MissingFacingError, ImpossibleConditionError.
+        """
+        wanted, assumed = self._formula(formula), self._formula(given)
+        if samples < 2:
+            raise ValueRangeError("the number of samples", samples, "at least 2")
+        graph = rooted(self.graph, objects_of(wanted, *([assumed] if assumed else [])))
+        drawing = Drawing(samples, rng or np.random.default_rng(0), viewer)
+        return probability(graph, wanted, assumed, drawing)
 
     def ask(
         self,
@@ -112,8 +141,8 @@ class KnowledgeBase:
         engine: str = "exact",
         samples: int = DEFAULT_SAMPLES,
         seed: int = 0,
-    ) -> Where:
-        """Answer a query written in the language, such as `where Cup?` or `where Cup in room r133 at 09:30?`.
+    ) -> Answer:
+        """Answer a query written in the language, such as `where Cup?` or `prob left-of(Cup, Keyboard)?`.
 
         What the query does not say of the circumstances is as it is for this knowledge. Raises LanguageError,
         UnknownNameError, and UnansweredQueryError for what this release does not answer.
@@ -121,15 +150,30 @@ class KnowledgeBase:
         question = parse_query(query)
         known = self.under(_refined(self.circumstances, Circumstances.of(question.circumstances)))
         check_question(question, known.graph)
-        if question.given is not None:
-            raise UnansweredQueryError("given")
-        if not isinstance(question, questions.Where):
-            raise UnansweredQueryError(type(question).__name__.lower())
-        wrt = question.relatum.text if question.relatum else None
-        rng = np.random.default_rng(seed) if engine == "sampling" else None
-        return known.where(
-            question.target.text, wrt=wrt, viewer=viewer, engine=engine, samples=samples, rng=rng
-        )
+        given, rng = question.given, np.random.default_rng(seed)
+        match question:
+            case questions.Where(target=target, relatum=relatum):
+                wrt = relatum.text if relatum else None
+                return known.where(
+                    target.text, wrt=wrt, given=given, viewer=viewer, engine=engine, samples=samples, rng=rng
+                )
+            case questions.Prob(formula=formula):
+                return known.prob(formula, given, viewer=viewer, samples=samples, rng=rng)
+            case _:
+                raise UnansweredQueryError(type(question).__name__.lower())
+
+    @overload
+    def _formula(self, formula: str | Formula) -> Formula: ...
+    @overload
+    def _formula(self, formula: str | Formula | None) -> Formula | None: ...
+    def _formula(self, formula: str | Formula | None) -> Formula | None:
+        """Return a formula as a node, its names checked."""
+        if formula is None:
+            return None
+        node = parse_formula(formula) if isinstance(formula, str) else formula
+        for atom in atoms_of(node):
+            check_atom(atom, self.graph)
+        return node
 
 
 def load(name: str | Path) -> KnowledgeBase:

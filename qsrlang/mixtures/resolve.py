@@ -31,7 +31,7 @@ class Placement:
     constraints: tuple[Constraint, ...]
 
 
-def place_exactly(graph: RelationGraph, plan: Plan, viewer: Pose2 | None) -> Placement:
+def place_exactly(graph: RelationGraph, plan: Plan, target: str, viewer: Pose2 | None) -> Placement:
     """Place by moments: exact in every atom, cubature over what is uncertain before it."""
     joint = JointGaussian.empty(_orientation(plan, viewer))
     for landmark in plan.landmarks:
@@ -44,14 +44,45 @@ def place_exactly(graph: RelationGraph, plan: Plan, viewer: Pose2 | None) -> Pla
         else:
             joint, more = joint.observed(step.constraint.referent, conditional.moments)
             evidence += more + math.log(math.pi * graph.reach**2)
-    mean, covariance = joint.marginal(plan.target)
+    mean, covariance = joint.marginal(plan.seats[target].block)
     return Placement(mean[:2], _definite(covariance[:2, :2]), evidence, plan.constraints)
 
 
 def place_by_sampling(
-    graph: RelationGraph, plan: Plan, viewer: Pose2 | None, samples: int, rng: np.random.Generator
+    graph: RelationGraph,
+    plan: Plan,
+    target: str,
+    viewer: Pose2 | None,
+    samples: int,
+    rng: np.random.Generator,
 ) -> Placement:
     """Place as the paper does: draw every object of the chain in turn, then fit one Gaussian to the target's draws."""
+    drawn = draw(graph, plan, viewer, samples, rng)
+    if not np.isfinite(drawn.logs).any():
+        raise UnreachedTargetError(target, ["its statements contradict each other in every sample"])
+    weights = np.exp(drawn.logs - drawn.logs.max())
+    mean, covariance = fitted(drawn.points(plan.seats[target].block), weights)
+    evidence = float(drawn.logs.max() + math.log(weights.mean()))
+    return Placement(mean, covariance, evidence, plan.constraints)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Drawn:
+    """Draws of all objects of a plan together: states (P, n), their blocks, and log weights (P,) of what is fused."""
+
+    states: FloatArray
+    blocks: dict[str, slice]
+    logs: FloatArray
+
+    def points(self, block: str) -> FloatArray:
+        """Return where an object is in each draw: (P, 2) [m]."""
+        return self.states[:, self.blocks[block]][:, :2]
+
+
+def draw(
+    graph: RelationGraph, plan: Plan, viewer: Pose2 | None, samples: int, rng: np.random.Generator
+) -> Drawn:
+    """Draw landmarks and objects in the order of the plan, from the true densities, no Gaussian between."""
     blocks: dict[str, slice] = {}
     states = np.zeros((samples, 0))
     for landmark in plan.landmarks:
@@ -65,18 +96,17 @@ def place_by_sampling(
         if step.places:
             states = _append(states, blocks, referent, conditional.sample(states, rng))
         else:
+            densities = conditional.pdf(states[:, blocks[referent]], states)
             with np.errstate(divide="ignore"):
-                logs += np.log(
-                    conditional.pdf(states[:, blocks[referent]], states) * math.pi * graph.reach**2
-                )
-    if not np.isfinite(logs).any():
-        raise UnreachedTargetError(plan.target, ["its statements contradict each other in every sample"])
-    weights = np.exp(logs - logs.max())
-    points = states[:, blocks[plan.target]][:, :2]
-    mean = weights @ points / weights.sum()
-    covariance = np.cov(points.T, aweights=weights, ddof=0)
-    evidence = float(logs.max() + math.log(weights.mean()))
-    return Placement(mean, _definite(covariance), evidence, plan.constraints)
+                logs += np.log(densities * math.pi * graph.reach**2)
+    return Drawn(states, blocks, logs)
+
+
+def fitted(points: FloatArray, weights: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return mean (2,) and covariance (2, 2) of weighted draws (P, 2)."""
+    mean = np.asarray(weights @ points / weights.sum())
+    off = points - mean
+    return mean, _definite(off.T @ (weights[:, None] * off) / weights.sum())
 
 
 def make_conditional(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, replace
 
 from qsrlang.errors import TooManyWorldsError
@@ -10,6 +10,7 @@ from qsrlang.mixtures.roles import instances_in_roles, is_unplaced_role, landmar
 from qsrlang.relations.graph import Alternative, Authority, Choice, Constraint, Landmark, Pair, RelationGraph
 
 MAX_WORLDS = 10_000
+MIN_REST = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,12 +18,14 @@ class World:
     """Constraints that hold together, with the landmark that stands for each name, and their prior weight.
 
     `aliases` name, for a class whose any instance will do, the role it is here; constraints name the role already.
+    `absent` are the objects that are elsewhere: shares below 1 leave the rest to that.
     """
 
     weight: float
     constraints: tuple[Constraint, ...] = ()
     bindings: tuple[tuple[str, Landmark], ...] = ()
     aliases: tuple[tuple[str, str], ...] = ()
+    absent: tuple[str, ...] = ()
 
     def named(self, name: str) -> str:
         """Return what a name stands for: for a class perhaps one of its roles."""
@@ -38,10 +41,10 @@ class _Partial:
     decided: frozenset[int] = frozenset()
 
 
-def enumerate_worlds(graph: RelationGraph, target: str) -> tuple[World, ...]:
-    """Return every world of the sub-graph that `target` depends on; raises TooManyWorldsError beyond MAX_WORLDS."""
+def enumerate_worlds(graph: RelationGraph, *targets: str) -> tuple[World, ...]:
+    """Return every world of the sub-graph that targets depend on; raises TooManyWorldsError beyond MAX_WORLDS."""
     complete: list[World] = []
-    waiting = [_Partial(World(1.0), (target,))]
+    waiting = [_Partial(World(1.0), targets)]
     while waiting:
         partial = waiting.pop()
         if not partial.pending:
@@ -49,14 +52,14 @@ def enumerate_worlds(graph: RelationGraph, target: str) -> tuple[World, ...]:
         else:
             waiting.extend(_step(graph, partial))
         if len(waiting) + len(complete) > MAX_WORLDS:
-            raise TooManyWorldsError(target, MAX_WORLDS)
+            raise TooManyWorldsError(" and ".join(targets), MAX_WORLDS)
     return tuple(reversed(complete))
 
 
-def needed_for(name: str, constraints: Iterable[Constraint]) -> frozenset[str]:
-    """Return the names that help to place one: itself, the relata of its constraints, and so on."""
+def needed_for(names: Collection[str], constraints: Iterable[Constraint]) -> frozenset[str]:
+    """Return the names that help to place some: themselves, the relata of their constraints, and so on."""
     constraints = tuple(constraints)
-    needed, waiting = {name}, [name]
+    needed, waiting = set(names), list(names)
     while waiting:
         referent = waiting.pop()
         relata = {one for c in constraints if c.referent == referent for one in c.relata} - needed
@@ -119,7 +122,7 @@ def _candidates(graph: RelationGraph, partial: _Partial, name: str) -> tuple[str
 def _differ(role: str, name: str, constraints: tuple[Constraint, ...]) -> bool:
     """Return whether a role is not what a name stands for: one constraint names both, or the role depends on it."""
     together = any({role, name} <= {one.referent, *one.relata} for one in constraints)
-    return together or name in needed_for(role, constraints)
+    return together or name in needed_for((role,), constraints)
 
 
 def _stand_in(partial: _Partial, candidates: tuple[str, ...]) -> Iterator[_Partial]:
@@ -143,7 +146,11 @@ def _next_choice(graph: RelationGraph, partial: _Partial, name: str) -> Choice |
 
 
 def _choose(graph: RelationGraph, partial: _Partial, choice: Choice) -> Iterator[_Partial]:
-    for alternative in _compatible(graph, choice, partial.covered):
+    alternatives = _compatible(graph, choice, partial.covered)
+    rest = 1.0 - sum(alternative.share for alternative in alternatives)
+    if rest > MIN_REST:
+        yield _elsewhere(partial, choice, rest)
+    for alternative in alternatives:
         pairs = [graph.pair_of(constraint) for constraint in alternative.constraints]
         fresh = [
             c for c, pair in zip(alternative.constraints, pairs, strict=True) if pair not in partial.covered
@@ -158,6 +165,17 @@ def _choose(graph: RelationGraph, partial: _Partial, choice: Choice) -> Iterator
             covered=partial.covered.union(pairs),
             decided=partial.decided | {id(choice)},
         )
+
+
+def _elsewhere(partial: _Partial, choice: Choice, rest: float) -> _Partial:
+    """Return the world in which what a choice speaks of is somewhere that no statement names."""
+    absent = (*partial.world.absent, *sorted({referent for referent, _ in choice.governs}))
+    return replace(
+        partial,
+        world=replace(partial.world, weight=partial.world.weight * rest, absent=absent),
+        covered=partial.covered | choice.governs,
+        decided=partial.decided | {id(choice)},
+    )
 
 
 def _compatible(graph: RelationGraph, choice: Choice, covered: frozenset[Pair]) -> tuple[Alternative, ...]:

@@ -9,6 +9,7 @@ from types import MappingProxyType
 
 from qsrlang.language.diagnostics import Diagnostic, Diagnostics
 from qsrlang.language.parser import MAX_FINDINGS
+from qsrlang.language.silencing import unsilenced
 from qsrlang.language.source import Source
 from qsrlang.relations.anchoring import report_unanchored
 from qsrlang.relations.contexts import Circumstances
@@ -51,9 +52,8 @@ def build_graph(
     layers = build_layers(statements, symbols)
     report_unanchored(symbols)
     graph = _graph(layers, symbols, circumstances or ANYWHERE)
-    return Built(
-        graph, _ordered((*library.diagnostics, *symbols.diagnostics), source), library, symbols, layers
-    )
+    found = unsilenced((*library.diagnostics, *symbols.diagnostics))
+    return Built(graph, _ordered(found, source), library, symbols, layers)
 
 
 def _ordered(found: tuple[Diagnostic, ...], source: Source) -> Diagnostics:

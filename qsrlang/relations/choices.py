@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
 
-from qsrlang.language.diagnostics import Label, Severity
+from qsrlang.language.diagnostics import Label
 from qsrlang.language.statements import (
     Alternative,
     Believe,
@@ -51,11 +51,6 @@ def build_choices(
 def requirements(statements: Iterable[Statement], symbols: Symbols) -> tuple[Requirement, ...]:
     """Return what is required."""
     required = [one for one in statements if isinstance(one, Require) and check_atoms(one.formula, symbols)]
-    for one in required:
-        note = "it is read and checked, but no answer takes it into account yet"
-        symbols.report(
-            "Q514", "this requirement does not change answers", one, note, severity=Severity.WARNING
-        )
     return tuple(Requirement(one.share, one.formula, Citation.at(one.span)) for one in required)
 
 

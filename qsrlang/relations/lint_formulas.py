@@ -6,7 +6,6 @@ import math
 import re
 from collections import defaultdict
 from collections.abc import Iterator
-from itertools import combinations
 
 from qsrlang.language.diagnostics import Diagnostic, Edit, Label
 from qsrlang.language.printer import print_formula
@@ -87,17 +86,11 @@ def _kind_with_a_front(atom: Atom, linted: Linted) -> str | None:
     """Return the class of the relatum where its front makes the atom ambiguous."""
     symbols = linted.symbols
     relation = symbols.relations.get(atom.relation.text)
-    if (
-        atom.framed
-        or relation is None
-        or len(atom.arguments) != 2
-        or relation.arity != 2
-        or _is_mirrored(relation)
-    ):
+    if atom.framed or relation is None or not len(atom.arguments) == relation.arity == 2:
         return None
     relatum = atom.arguments[1].text
-    kind = symbols.class_of(symbols.roles.get(relatum, relatum))
-    return kind if kind in symbols.classes and symbols.classes[kind].front else None
+    kind = symbols.classes.get(symbols.class_of(symbols.roles.get(relatum, relatum)))
+    return kind.name if kind and kind.front and not _is_mirrored(relation) else None
 
 
 def _ambiguous(atom: Atom, kind: str, linted: Linted) -> Diagnostic:
@@ -142,32 +135,22 @@ def disjunctions(linted: Linted) -> Iterator[Diagnostic]:
     for statement, formula in linted.formulas():
         parts = formula.parts if isinstance(formula, And) else (formula,)
         for disjunction in (part for part in parts if isinstance(part, Or)):
-            if _offers_alternatives(statement, disjunction, linted):
-                leaves_open = isinstance(statement, Require)
+            if _offers_alternatives(statement, disjunction):
                 yield warning(
                     "Q510",
                     "a disjunction of alternatives for one pair",
                     disjunction.span,
-                    "it leaves open which holds" if leaves_open else "each weighs the same",
+                    "each weighs the same",
                     "give each its share: 'believe 0.3 :: … | 0.7 :: …'",
                     edits=_as_belief(statement, disjunction),
                 )
 
 
-def _offers_alternatives(statement: Statement, disjunction: Or, linted: Linted) -> bool:
-    """Whether a disjunction speaks of one pair, and, where it is required, whether its parts exclude each other."""
+def _offers_alternatives(statement: Statement, disjunction: Or) -> bool:
+    """Whether a disjunction speaks of one pair; of a requirement it says what is meant."""
     pairs = {tuple(one.text for one in atom.arguments) for atom in atoms_of(disjunction)}
     negates = any(isinstance(part, Not) for part in _unnegated(disjunction))
-    if isinstance(statement, Believe) or len(pairs) > 1 or negates:
-        return False
-    return not isinstance(statement, Require) or _are_exclusive(disjunction, linted)
-
-
-def _are_exclusive(disjunction: Or, linted: Linted) -> bool:
-    names = [part.relation.text for part in disjunction.parts if isinstance(part, Atom)]
-    relations = linted.symbols.relations
-    pairs = ((relations.get(one), other) for one, other in combinations(names, 2))
-    return len(names) == len(disjunction.parts) and all(one and other in one.disjoint for one, other in pairs)
+    return not (isinstance(statement, Believe | Require) or len(pairs) > 1 or negates)
 
 
 def _as_belief(statement: Statement, disjunction: Or) -> tuple[Edit, ...]:

@@ -8,7 +8,7 @@ MONITOR = "monitor-1 : Monitor at (0 m, 0 m) facing -90 deg"
 def test_check_sums_up_what_is_known(qsr_command):
     code, out, _ = qsr_command("check", "office/desk")
     assert code == 0
-    assert "office/desk: no errors; 9 classes, 6 relations, 0 landmarks, 5 related pairs" in out
+    assert "office/desk: no errors; 9 classes, 9 relations, 0 landmarks, 5 related pairs" in out
 
 
 def test_check_tells_every_mistake_and_exits_with_2(qsr_command, tmp_path):

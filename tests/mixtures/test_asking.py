@@ -88,9 +88,6 @@ def test_a_query_answers_as_the_method_does():
 @pytest.mark.parametrize(
     ("query", "verb"),
     [
-        ("prob left-of(Cup, M) given close-to(Cup, M)?", "given"),
-        ("where Cup given left-of(Cup, M)?", "given"),
-        ("prob left-of(Cup, M)?", "prob"),
         ("explain Cup?", "explain"),
         ("explain left-of(Cup, M)?", "explain"),
         ("views Cup?", "views"),
