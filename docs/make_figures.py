@@ -12,10 +12,13 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
+import matplotlib
 import numpy as np
 from matplotlib.image import imsave
 
 import qsrlang as qsr
+from qsrlang.editor.code_picture import code_picture
+from qsrlang.resources import resource_path
 
 DOCS = Path(__file__).parent
 IMAGES = DOCS / "images"
@@ -36,6 +39,13 @@ def draw_mixtures() -> None:
         qsr.save_figure(qsr.draw_answer(answer, known), IMAGES / f"cup-wrt-{name.lower()}.png")
     placed = known.with_landmarks(MONITOR, DESK)
     qsr.save_figure(qsr.draw_answer(placed.where("Cup"), placed), IMAGES / "cup-on-desk.png")
+
+
+def draw_code() -> None:
+    """The Fig. 2 file as an editor shows it."""
+    font = Path(matplotlib.get_data_path(), "fonts", "ttf", "DejaVuSansMono.ttf")
+    text = resource_path("knowledge", "office", "desk.qsr").read_text(encoding="utf-8")
+    (IMAGES / "highlighting.png").write_bytes(code_picture(text, font))
 
 
 def draw_room() -> None:
@@ -111,6 +121,7 @@ def main() -> None:
     has_data = (qsr.data_root() / "tum_kitchen").is_dir()
     if chosen.only != "tables":
         draw_mixtures()
+    draw_code()
         draw_room()
         draw_search("kitchen", "qsr", 7, "kitchen-search")
         if has_data:

@@ -1,3 +1,4 @@
+from .cli.notebook import load_ipython_extension, unload_ipython_extension
 from .errors import (
     BlockedPoseError,
     FileError,
@@ -70,7 +71,6 @@ from .simulation.survey import survey_room
 from .simulation.world import PybulletWorld
 
 __all__ = [
-    "TPCC",
     "Answer",
     "ArmSummary",
     "BeliefPlanner",
@@ -122,6 +122,7 @@ __all__ = [
     "Sector",
     "Sight",
     "Supports",
+    "TPCC",
     "TooManyWorldsError",
     "Trial",
     "TrialSeeds",
@@ -153,6 +154,7 @@ __all__ = [
     "format_source",
     "in_view",
     "load",
+    "load_ipython_extension",
     "load_room",
     "load_scenario",
     "neighbours",
@@ -176,6 +178,7 @@ __all__ = [
     "search_world",
     "shortest_path",
     "survey_room",
+    "unload_ipython_extension",
     "view_values",
     "voxel_weights",
 ]

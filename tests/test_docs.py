@@ -1,5 +1,6 @@
 """Every code block of the documents and every example runs."""
 
+import io
 import re
 import runpy
 import shlex
@@ -9,13 +10,15 @@ from pathlib import Path
 
 import pytest
 
+import qsrlang as qsr
 from qsrlang.cli.main import main
 from qsrlang.experiments.scenariofiles import ScenarioEntry
+from qsrlang.relations.imports import find_knowledge, read_source
 
 ROOT = Path(__file__).parents[1]
 DOCUMENTS = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")])
 EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
-BLOCK = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+BLOCK = re.compile(r"^```([\w ]*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 NEEDS_DATA = ("tum-kitchen",)
 
 
@@ -30,7 +33,18 @@ def blocks(language):
 
 def test_every_block_says_what_it_is():
     kinds = {kind for path in DOCUMENTS for kind, _ in BLOCK.findall(path.read_text(encoding="utf-8"))}
-    assert kinds <= {"python", "sh", "qsr", "toml"}
+    assert kinds <= {"python", "sh", "qsr", "qsr rejected", "text", "toml"}
+
+
+def test_what_is_shown_of_rejected_knowledge_is_what_is_said():
+    """A block of text directly after rejected knowledge shows its findings; there is no other text."""
+    shown = re.compile(r"^```qsr rejected\n(.*?)^```\n```text\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+    texts = [text for path in DOCUMENTS for text in shown.findall(path.read_text(encoding="utf-8"))]
+    assert texts
+    for knowledge, said in texts:
+        assert f"{qsr.check_text(knowledge, 'office.qsr').errors}\n" == said
+    every = [kind for path in DOCUMENTS for kind, _ in BLOCK.findall(path.read_text(encoding="utf-8"))]
+    assert every.count("text") == len(texts)
 
 
 @pytest.mark.parametrize("text", blocks("python"))
@@ -41,8 +55,6 @@ def test_python_blocks_run(text, tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("text", blocks("qsr"))
 def test_knowledge_blocks_are_free_of_errors(text):
-    import qsrlang as qsr
-
     qsr.parse_knowledge(text)
 
 
@@ -55,6 +67,8 @@ def test_scenario_blocks_have_the_fields_of_a_scenario(text):
 def test_commands_run(text, tmp_path, monkeypatch, capsys):
     """`qsr` runs as typed, short of long comparisons; of `make`, the target must exist."""
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO()))
+    Path("desk.qsr").write_text(qsr.format_source(read_source(find_knowledge("office/desk"))))
     targets = re.findall(r"^(\w+):", (ROOT / "Makefile").read_text(), re.MULTILINE)
     for line in text.replace("\\\n", " ").splitlines():
         words = shlex.split(line, comments=True)

@@ -14,7 +14,8 @@ import qsrlang as qsr
 def print_answer(answer: qsr.Answer, console: Console, title: str) -> None:
     """Print an answer as a table: of `where`, with the numbers of the statements behind each component."""
     if isinstance(answer, qsr.Probability):
-        console.print(probability_table(answer, title))
+        console.print(title, markup=False, highlight=False, soft_wrap=True)
+        console.print(probability_table(answer))
     else:
         _print_where(answer, console, title)
     if answer.assumed:
@@ -22,9 +23,9 @@ def print_answer(answer: qsr.Answer, console: Console, title: str) -> None:
         console.print(assumed, highlight=False, markup=False, soft_wrap=True)
 
 
-def probability_table(answer: qsr.Probability, title: str) -> Table:
+def probability_table(answer: qsr.Probability) -> Table:
     """Return a probability with its standard error as a table."""
-    table = Table(title=escape(title), title_justify="left")
+    table = Table()
     for heading in ("probability", "standard error"):
         table.add_column(heading, justify="right", no_wrap=True)
     table.add_row(f"{answer.value:.4f}", f"{answer.standard_error:.4f}")

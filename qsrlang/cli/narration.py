@@ -91,13 +91,30 @@ def _thing(seen: Detection) -> str:
 
 def narrate_end(console: Console, story: SearchStory) -> None:
     """Print how the search ended, as a table."""
+    console.print(outcome_table(story))
+
+
+def outcome_table(story: SearchStory) -> Table:
+    """Return how the search ended: outcome, object, time [s], looks and travel [m]."""
     table = Table(title=f"\nSearch for {story.target}", title_justify="left")
     for heading in ("outcome", "object", "time [s]", "looks", "travel [m]"):
         table.add_column(escape(heading), justify="right")
     name = story.detection.name if story.detection is not None else "-"
     outcome = "found" if story.found else "not found"
     table.add_row(outcome, name, f"{story.seconds:.1f}", str(story.poses), f"{story.travel:.1f}")
-    console.print(table)
+    return table
+
+
+def steps_table(story: SearchStory) -> Table:
+    """Return a search step by step: where it looked from, path [m], clock [s], and what it saw."""
+    table = Table()
+    for heading in ("step", "looked from", "travel [m]", "clock [s]", "because", ""):
+        said = heading in ("because", "")
+        table.add_column(escape(heading), justify="left" if said else "right", no_wrap=not said)
+    for step in story.steps:
+        numbers = (str(step.number + 1), _pose(step.pose), f"{step.travel:.1f}", f"{step.clock:.1f}")
+        table.add_row(*numbers, escape(_reason(story.opening, step)), escape(_seen(step, story.target)))
+    return table
 
 
 def story_json(story: SearchStory, pictures: Sequence[Path]) -> dict[str, Any]:

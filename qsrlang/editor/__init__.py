@@ -1,0 +1,1 @@
+"""What editors show and do: colours, completions, and a language server."""
