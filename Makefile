@@ -20,6 +20,7 @@ check: $(VENV)/.installed  ## style, types and the architecture test
 
 docs: $(VENV)/.installed  ## the figures and tables of docs/, made anew
 	$(BIN)/python docs/make_figures.py $(ARGS)
+	$(BIN)/python docs/make_terminal_picture.py
 
 bench: $(VENV)/.installed  ## every benchmark, ratios printed
 	for file in benchmarks/bench_*.py; do $(BIN)/python $$file $(ARGS) || exit 1; done

@@ -121,7 +121,7 @@ def main() -> None:
     has_data = (qsr.data_root() / "tum_kitchen").is_dir()
     if chosen.only != "tables":
         draw_mixtures()
-    draw_code()
+        draw_code()
         draw_room()
         draw_search("kitchen", "qsr", 7, "kitchen-search")
         if has_data:

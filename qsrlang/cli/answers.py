@@ -23,6 +23,11 @@ def print_answer(answer: qsr.Answer, console: Console, title: str) -> None:
         console.print(assumed, highlight=False, markup=False, soft_wrap=True)
 
 
+def title_of(query: str) -> str:
+    """Return a query as the title of its answer: on one line, without its question mark."""
+    return " ".join(query.split()).removesuffix("?").rstrip()
+
+
 def probability_table(answer: qsr.Probability) -> Table:
     """Return a probability with its standard error as a table."""
     table = Table()
@@ -50,8 +55,8 @@ def answer_table(answer: qsr.Where, title: str) -> Table:
         numbers = " ".join(str(statements.index(one) + 1) for one in component.statements)
         table.add_row(
             f"{component.weight:.3f}",
-            f"{x:.3f}",
-            f"{y:.3f}",
+            _metres(x),
+            _metres(y),
             f"{major:.3f} × {minor:.3f}",
             f"{math.degrees(angle):.0f}",
             numbers or "its own landmark",
@@ -72,3 +77,8 @@ def frame_line(answer: qsr.Where) -> str:
         frame = f"frame: {answer.frame} at the origin, x away from the viewer, y to its left (no landmark is used)"
     rest = f"; elsewhere: {answer.elsewhere:.3f}" if answer.elsewhere > 0.0 else ""
     return f"{frame}{rest}"
+
+
+def _metres(value: float) -> str:
+    """Return a coordinate to the millimetre; what rounds to zero has no sign."""
+    return f"{round(value, 3) + 0.0:.3f}"

@@ -9,7 +9,7 @@ import typer
 from rich.console import Console
 
 import qsrlang as qsr
-from qsrlang.cli.answers import print_answer
+from qsrlang.cli.answers import print_answer, title_of
 from qsrlang.cli.options import Format, KnowledgeFile, Landmarks, OutputFormat, Query, Viewer
 
 
@@ -31,7 +31,7 @@ def ask(
     if output is Format.JSON:
         typer.echo(json.dumps(answer.to_json(), ensure_ascii=False, indent=2))
     else:
-        print_answer(answer, Console(), " ".join(query.split()).removesuffix("?").rstrip())
+        print_answer(answer, Console(), title_of(query))
 
 
 def viewer_pose(text: str | None) -> qsr.Pose2 | None:

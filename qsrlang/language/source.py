@@ -73,8 +73,8 @@ def read_source(path: Path, name: str | None = None) -> Source:
     try:
         with path.open("rb") as file:
             content = file.read(MAX_SOURCE_BYTES + 1)
-    except OSError as error:
-        raise FileError(path, error.strerror or "cannot be read", remedy) from error
+    except (OSError, ValueError) as error:
+        raise FileError(path, getattr(error, "strerror", None) or "cannot be read", remedy) from error
     return decode_source(content, name or str(path), path)
 
 

@@ -78,7 +78,10 @@ def test_more_conditions_are_more_specific_and_a_shorter_period_is():
 
 
 def test_the_most_specific_context_wins_and_the_rest_comes_from_the_less_specific():
-    text = f"{RIGHT} observe left-of(Cup, Keyboard). in room a {{ {LEFT} }} in room a, weekend {{ observe behind-of(Keyboard, Monitor). }}"
+    text = (
+        f"{RIGHT} observe left-of(Cup, Keyboard). in room a {{ {LEFT} }} "
+        "in room a, weekend { observe behind-of(Keyboard, Monitor). }"
+    )
     assert said(text) == {"right-of"}
     assert said(text, room="b") == {"right-of"}
     assert said(text, room="a") == {"left-of"}

@@ -29,7 +29,10 @@ def findings(path):
         return error.diagnostics
 
 
-LAB = "static Bench { front: yes }. dynamic Cup. landmark b : Bench at (0 m, 0 m) facing 0 deg. observe left-of(Cup, Bench)."
+LAB = (
+    "static Bench { front: yes }. dynamic Cup. "
+    "landmark b : Bench at (0 m, 0 m) facing 0 deg. observe left-of(Cup, Bench)."
+)
 
 
 def test_an_alias_keeps_two_files_apart(tmp_path):
@@ -50,8 +53,13 @@ def test_an_alias_keeps_two_files_apart(tmp_path):
 
 
 def test_prefixes_add_up_and_roles_parameters_and_rooms_bear_none(tmp_path):
-    inner = "relation beside(referent, relatum) { angle: any, disjoint: off }. relation off(referent, relatum) { angle: any }. dynamic P, Q. "
-    inner += "scene(left: P, right: P, Q) ⇔ beside(left, Q) ∧ beside(right: P, Q). in room r { observe beside(P, Q). }"
+    inner = """
+    relation beside(referent, relatum) { angle: any, disjoint: off }.
+    relation off(referent, relatum) { angle: any }.
+    dynamic P, Q.
+    scene(left: P, right: P, Q) ⇔ beside(left, Q) ∧ beside(right: P, Q).
+    in room r { observe beside(P, Q). }
+    """
     write(tmp_path, "inner.qsr", inner)
     write(tmp_path, "outer.qsr", 'import "inner.qsr" as in-side.')
     graph = qsr.load(write(tmp_path, "a.qsr", 'import "outer.qsr" as out.')).graph
@@ -106,7 +114,10 @@ def test_a_null_in_an_import_is_a_finding():
 
 
 def test_roles_tell_two_of_one_class_apart():
-    text = "dynamic Cup, Plate. scene(Plate, left: Cup, right: Cup) ⇔ left-of(left, Plate) ∧ right-of(right: Cup, left: Cup)."
+    text = (
+        "dynamic Cup, Plate. scene(Plate, left: Cup, right: Cup) ⇔ "
+        "left-of(left, Plate) ∧ right-of(right: Cup, left: Cup)."
+    )
     one = built(text)
     assert one.diagnostics == ()
     assert one.graph.roles == {"left: Cup": "Cup", "right: Cup": "Cup"}
@@ -123,7 +134,10 @@ def test_a_role_stands_for_one_class_and_must_be_a_member():
 
 
 def test_what_a_broken_definition_would_define_is_not_reported_again():
-    text = "dynamic Cup { size: 8 × 8 cm }, Plate.\nobserve left-of(Cup, Plate).\nlandmark p : Plate at (0, 0 m).\nobserve left-of(Cup, p)."
+    text = (
+        "dynamic Cup { size: 8 × 8 cm }, Plate.\nobserve left-of(Cup, Plate).\n"
+        "landmark p : Plate at (0, 0 m).\nobserve left-of(Cup, p)."
+    )
     assert codes(text) == ["Q301", "Q301"]
 
 
