@@ -26,9 +26,9 @@ from .geometry.angles import relative_angle
 from .geometry.pose import Pose2
 from .geometry.viewcone import Sector, Triangle, ViewCone
 from .language.diagnostics import Diagnostic, Diagnostics, Edit, LanguageError
-from .language.formatter import format_source
 from .language.parser import parse, parse_formula, parse_landmark, parse_place, parse_query
-from .language.printer import print_document, print_query
+from .language.printing.formatter import format_source
+from .language.printing.printer import print_document, print_query
 from .maps.mapping import VoxelMapper
 from .maps.navigation import NavigationGrid, occupancy_from_voxels
 from .maps.occupancy import Cell, OccupancyGrid
@@ -71,6 +71,7 @@ from .simulation.survey import survey_room
 from .simulation.world import PybulletWorld
 
 __all__ = [
+    "TPCC",
     "Answer",
     "ArmSummary",
     "BeliefPlanner",
@@ -122,7 +123,6 @@ __all__ = [
     "Sector",
     "Sight",
     "Supports",
-    "TPCC",
     "TooManyWorldsError",
     "Trial",
     "TrialSeeds",

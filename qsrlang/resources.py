@@ -1,4 +1,4 @@
-"""Finds what travels with the package: grammars/ and knowledge/, and the folder of real data."""
+"""Finds what travels with the package: grammars/, knowledge/, the pages of the codes; and the folder of real data."""
 
 from __future__ import annotations
 
@@ -9,15 +9,16 @@ from pathlib import Path
 from qsrlang.errors import FileError
 
 _PACKAGE = Path(__file__).resolve().parent
+_IN_A_CHECKOUT = {"codes": Path("docs", "language", "codes")}
 
 
 @cache
 def resource_root(name: str) -> Path:
-    """Return the folder `grammars` or `knowledge`: inside an installed wheel, or beside a checkout's package."""
+    """Return the folder `grammars`, `knowledge` or `codes`: inside an installed wheel, or in the checkout around it."""
     installed = _PACKAGE / name
     if installed.is_dir():
         return installed
-    checkout = _PACKAGE.parent / name
+    checkout = _PACKAGE.parent / _IN_A_CHECKOUT.get(name, name)
     if (_PACKAGE.parent / "pyproject.toml").is_file() and checkout.is_dir():
         return checkout
     raise FileError(installed, "this part of the package is missing", "install qsrlang again")

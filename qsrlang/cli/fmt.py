@@ -14,10 +14,10 @@ from qsrlang.cli.findings import print_findings
 from qsrlang.errors import FileError, QSRError
 from qsrlang.files import write_whole
 from qsrlang.language.diagnostics import LanguageError, raise_errors
-from qsrlang.language.formatter import format_source
 from qsrlang.language.parser import parse_source
+from qsrlang.language.printing.formatter import format_source
+from qsrlang.language.printing.spelling import Spelling
 from qsrlang.language.source import MAX_SOURCE_BYTES, Source, decode_source
-from qsrlang.language.spelling import Spelling
 from qsrlang.relations.imports import find_knowledge, read_source
 
 STDIN = "-"

@@ -15,8 +15,8 @@ from qsrlang.language.codes import CODES
 from qsrlang.language.diagnostics import Diagnostic, Severity
 from qsrlang.relations.build import build_graph
 from qsrlang.relations.imports import find_knowledge, read_source
-from qsrlang.relations.lint import RULES
-from qsrlang.relations.lint import lint as find_doubtful
+from qsrlang.relations.linting.lint import RULES
+from qsrlang.relations.linting.lint import lint as find_doubtful
 
 WARNED, REFUSED = 1, 2
 _EXITS = {Severity.ERROR: REFUSED, Severity.WARNING: WARNED}

@@ -9,7 +9,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from qsrlang.language import statements as st
-from qsrlang.language.amounts import amount_text, quantity_text
+from qsrlang.language.printing.amounts import amount_text, quantity_text
 from qsrlang.language.source import Span
 from qsrlang.language.syntax import Anywhere, Density, Dimension, Mix, Name, Normal, Uniform
 from qsrlang.relations.build import Built

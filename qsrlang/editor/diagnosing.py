@@ -13,7 +13,7 @@ from qsrlang.editor.workbench import Workbench
 from qsrlang.language.diagnostics import Diagnostic, Edit, Severity
 from qsrlang.language.fixing import sure_edits
 from qsrlang.language.source import Source, Span
-from qsrlang.relations.lint import lint
+from qsrlang.relations.linting.lint import lint
 
 MAX_SHOWN = 1000
 """More findings of one file are not sent."""

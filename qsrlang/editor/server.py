@@ -13,7 +13,7 @@ from qsrlang.editor.diagnosing import actions
 from qsrlang.editor.navigation import Thing, imported_at, occurrence_at, thing_at
 from qsrlang.editor.renaming import RenamingError, check_renamable, rename
 from qsrlang.editor.session import EditorSession
-from qsrlang.language.formatter import format_source
+from qsrlang.language.printing.formatter import format_source
 from qsrlang.language.source import Span
 
 _COMPLETION_KINDS = {

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from lark import Lark
 
 from qsrlang.language.lexing import ExpectingLexer, fixed_spellings
-from qsrlang.language.question_nodes import NodeBuilder
+from qsrlang.language.nodes.questions import NodeBuilder
 from qsrlang.resources import resource_path
 
 STARTS = ("statement", "context_head", "query", "landmark_body", "document")

@@ -99,7 +99,9 @@ def _kinds(terminals: Collection[Any]) -> dict[str, tuple[str, ...]]:
     for terminal in terminals:
         for spelling in fixed_spellings(terminal):
             kinds[spelling].append(terminal.name)
-    return {spelling: (*names, *(["NAME"] if spelling[0].isalpha() else [])) for spelling, names in kinds.items()}
+    return {
+        spelling: (*names, *(["NAME"] if spelling[0].isalpha() else [])) for spelling, names in kinds.items()
+    }
 
 
 def _pattern(terminals: Collection[Any]) -> str:

@@ -104,7 +104,11 @@ def _context(slip: Slip) -> Remedy | None:
 
 def _infix(slip: Slip) -> Remedy | None:
     relatum = NAME.match(slip.after.lstrip())
-    if "LPAR" not in slip.accepted or relatum is None or not (NAME.match(slip.word) and NAME.fullmatch(slip.before)):
+    if (
+        "LPAR" not in slip.accepted
+        or relatum is None
+        or not (NAME.match(slip.word) and NAME.fullmatch(slip.before))
+    ):
         return None
     return Remedy(f"the relation comes first: {slip.word}({slip.before}, {relatum.group()})")
 
@@ -168,7 +172,7 @@ def _direction(slip: Slip) -> Remedy | None:
 
 
 def _time(slip: Slip) -> Remedy | None:
-    if slip.accepted != {"TIME"} or not slip.word.isdigit() or len(slip.word) > 2 or int(slip.word) > 24:
+    if slip.accepted != {"TIME"} or not slip.word.isdecimal() or len(slip.word) > 2 or int(slip.word) > 24:
         return None
     time = f"{int(slip.word):02d}:00"
     return Remedy(f"write '{time}'", slip.edit(time))

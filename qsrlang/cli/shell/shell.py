@@ -19,7 +19,7 @@ from qsrlang.language.diagnostics import Diagnostic, Severity
 from qsrlang.language.parser import parse_query
 from qsrlang.language.questions import Check
 from qsrlang.language.rendering import visible
-from qsrlang.relations.lint import lint
+from qsrlang.relations.linting.lint import lint
 
 FAINT = "bright_black"
 

@@ -8,10 +8,10 @@ from itertools import pairwise
 from qsrlang.language import questions as q
 from qsrlang.language import statements as st
 from qsrlang.language import syntax as s
-from qsrlang.language.amounts import amount_text, number_text, quantity_text, signed_text
-from qsrlang.language.formatter import format_source
+from qsrlang.language.printing.amounts import amount_text, number_text, quantity_text, signed_text
+from qsrlang.language.printing.formatter import format_source
+from qsrlang.language.printing.spelling import SIGNS, Spelling
 from qsrlang.language.source import Source
-from qsrlang.language.spelling import SIGNS, Spelling
 
 LENGTH, ANGLE = s.Dimension.LENGTH, s.Dimension.ANGLE
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-from qsrlang.language.arrangement import arrange, on_one_line
-from qsrlang.language.layout import INDENT, WIDTH
 from qsrlang.language.lexing import Word
 from qsrlang.language.parser import words_of
-from qsrlang.language.sentence import NO_GAP, Gap, Remark, Token, read_gap
+from qsrlang.language.printing.arrangement import arrange, on_one_line
+from qsrlang.language.printing.layout import INDENT, WIDTH
+from qsrlang.language.printing.sentence import NO_GAP, Gap, Remark, Token, read_gap
+from qsrlang.language.printing.spelling import LANDMARK_COLON, SIGNS, Spelling
 from qsrlang.language.source import Source
-from qsrlang.language.spelling import LANDMARK_COLON, SIGNS, Spelling
 from qsrlang.language.splitting import Kind, Piece, skip_blank, split
 
 _LINE_ENDS = re.compile(r"\r+\n")

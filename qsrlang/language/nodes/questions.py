@@ -7,8 +7,8 @@ from typing import Any
 
 from qsrlang.language import questions as q
 from qsrlang.language import syntax as s
-from qsrlang.language.builder import nodes_of, token_of
-from qsrlang.language.statement_nodes import StatementNodes
+from qsrlang.language.nodes.builder import nodes_of, token_of
+from qsrlang.language.nodes.statements import StatementNodes
 from qsrlang.language.statements import Days, Room
 
 DEFAULT_SCENES = 1

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from qsrlang.language import syntax as s
-from qsrlang.language.builder import ANGLE, LENGTH, Builder, Field, nodes_of
+from qsrlang.language.nodes.builder import ANGLE, LENGTH, Builder, Field, nodes_of
 from qsrlang.language.statements import Relation
 
 FRACTION = s.Dimension.FRACTION

@@ -17,7 +17,7 @@ from qsrlang.language.statements import (
 )
 from qsrlang.language.syntax import Role, atoms_of
 from qsrlang.relations.imports import Library, find_knowledge
-from qsrlang.relations.linted import Linted, warning, whole_statement, without_comments
+from qsrlang.relations.linting.linted import Linted, warning, whole_statement, without_comments
 from qsrlang.relations.occurrences import occurrences
 
 _NAMED = ("class", "landmark", "relation", "scene")

@@ -9,10 +9,10 @@ from qsrlang.language.diagnostics import Diagnostic
 from qsrlang.language.silencing import unsilenced
 from qsrlang.language.source import Source
 from qsrlang.relations.build import Built
-from qsrlang.relations.lint_formulas import ambiguous_frames, disjunctions, implied_atoms
-from qsrlang.relations.lint_names import uncapitalised_classes, unplaced_classes, unused_imports
-from qsrlang.relations.lint_weights import impossible_contexts, missing_shares, zero_weights
-from qsrlang.relations.linted import Linted
+from qsrlang.relations.linting.formulas import ambiguous_frames, disjunctions, implied_atoms
+from qsrlang.relations.linting.linted import Linted
+from qsrlang.relations.linting.names import uncapitalised_classes, unplaced_classes, unused_imports
+from qsrlang.relations.linting.weights import impossible_contexts, missing_shares, zero_weights
 
 
 class Rule(NamedTuple):

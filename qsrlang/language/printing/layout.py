@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import TypeAlias
 
-from qsrlang.language.sentence import Remark
+from qsrlang.language.printing.sentence import Remark
 
 WIDTH = 100
 INDENT = 4

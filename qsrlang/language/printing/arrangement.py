@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from itertools import pairwise
 
-from qsrlang.language.layout import Break, Close, Open, Part, lay_out
-from qsrlang.language.sentence import Remark, Sentence, Token
-from qsrlang.language.spelling import Spelling, blank_between
+from qsrlang.language.printing.layout import Break, Close, Open, Part, lay_out
+from qsrlang.language.printing.sentence import Remark, Sentence, Token
+from qsrlang.language.printing.spelling import Spelling, blank_between
 
 MAX_GROUPS = 24
 

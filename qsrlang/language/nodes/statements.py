@@ -7,9 +7,9 @@ from typing import Any
 
 from qsrlang.language import statements as st
 from qsrlang.language import syntax as s
-from qsrlang.language.builder import ANGLE, LENGTH, MINUTES_A_DAY, Builder, Field, Vector, nodes_of
-from qsrlang.language.formula_nodes import FormulaNodes
-from qsrlang.language.relation_nodes import RelationNodes
+from qsrlang.language.nodes.builder import ANGLE, LENGTH, MINUTES_A_DAY, Builder, Field, Vector, nodes_of
+from qsrlang.language.nodes.formulas import FormulaNodes
+from qsrlang.language.nodes.relations import RelationNodes
 
 _Head = tuple[st.Condition, ...]
 

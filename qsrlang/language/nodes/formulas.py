@@ -6,8 +6,8 @@ from dataclasses import replace
 from typing import Any
 
 from qsrlang.language import syntax as s
-from qsrlang.language.builder import Builder, Vector, nodes_of, token_of
 from qsrlang.language.lexing import Word
+from qsrlang.language.nodes.builder import Builder, Vector, nodes_of, token_of
 from qsrlang.language.source import Span
 
 

@@ -8,12 +8,12 @@ from collections import defaultdict
 from collections.abc import Iterator
 
 from qsrlang.language.diagnostics import Diagnostic, Edit, Label
-from qsrlang.language.printer import print_formula
+from qsrlang.language.printing.printer import print_formula
 from qsrlang.language.source import Span
 from qsrlang.language.statements import Believe, Observe, Require, Statement
 from qsrlang.language.syntax import And, Atom, Formula, Frame, Normal, Not, Or, Uniform, atoms_of
 from qsrlang.relations.calculus import Relation
-from qsrlang.relations.linted import Linted, warning, without_comments
+from qsrlang.relations.linting.linted import Linted, warning, without_comments
 
 TURN = 2.0 * math.pi
 _CONNECTIVE = re.compile(r"\s*(?:∧|&|and)\s*")

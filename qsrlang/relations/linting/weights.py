@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from itertools import combinations
 
 from qsrlang.language.diagnostics import Diagnostic, Edit, Label
-from qsrlang.language.printer import print_formula
+from qsrlang.language.printing.printer import print_formula
 from qsrlang.language.source import Span
 from qsrlang.language.statements import (
     Alternative,
@@ -20,7 +20,7 @@ from qsrlang.language.statements import (
 )
 from qsrlang.language.syntax import Formula, Not
 from qsrlang.relations.contexts import compatible
-from qsrlang.relations.linted import Linted, warning, whole_statement, without_comments
+from qsrlang.relations.linting.linted import Linted, warning, whole_statement, without_comments
 
 _SLACK = 1e-9
 

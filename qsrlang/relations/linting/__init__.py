@@ -1,0 +1,1 @@
+"""Likely mistakes and matters of style: one small function a rule."""
