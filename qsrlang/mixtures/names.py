@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from qsrlang.errors import UnknownNameError, ValueRangeError
-from qsrlang.language.questions import Explain, Landmarks, Prob, Query, Views, Where
+from qsrlang.language.questions import Explain, Landmarks, Prob, Query, Sample, Views, Where
 from qsrlang.language.syntax import Argument, Atom, atoms_of
 from qsrlang.relations.graph import RelationGraph
 
 
 def check_question(question: Query, graph: RelationGraph) -> None:
     """Raise UnknownNameError for a name nothing bears, ValueRangeError for an atom with too many or few arguments."""
+    if isinstance(question, Sample) and question.subject is not None:
+        _check_subject(question.subject.text, graph)
     for part in _parts(question):
         if isinstance(part, Atom):
             check_atom(part, graph)
@@ -21,10 +23,20 @@ def check_question(question: Query, graph: RelationGraph) -> None:
 
 def check_object(name: str, graph: RelationGraph) -> None:
     """Raise UnknownNameError unless a name is that of a class, a landmark or a role."""
-    landmarks = (landmark.name for landmark in graph.landmarks)
-    known = [*graph.classes, *landmarks, *graph.roles]
+    known = _objects(graph)
     if name not in known:
         raise UnknownNameError("role" if ":" in name else "class", name, known)
+
+
+def _check_subject(name: str, graph: RelationGraph) -> None:
+    """Scenes may be drawn of a named scene too."""
+    known = [*graph.scenes, *_objects(graph)]
+    if name not in known:
+        raise UnknownNameError("scene or class", name, known)
+
+
+def _objects(graph: RelationGraph) -> list[str]:
+    return [*graph.classes, *(landmark.name for landmark in graph.landmarks), *graph.roles]
 
 
 def _parts(question: Query) -> Iterator[Argument | Atom]:

@@ -75,4 +75,5 @@ def _graph(layers: tuple[Layer, ...], symbols: Symbols, circumstances: Circumsta
         symbols.defaults.get("reach", 1.0),
         MappingProxyType(symbols.roles),
         requirements,
+        tuple(symbols.scenes),
     )

@@ -138,7 +138,8 @@ class Requirement:
 class RelationGraph:
     """All that is known: an edge (referent, relatum) for every pair that a choice speaks of.
 
-    `roles` maps the objects that scenes tell apart by a role, such as `left: Cup`, to their classes.
+    `roles` maps the objects that scenes tell apart by a role, such as `left: Cup`, to their classes; `scenes` are the
+    names of those that have one.
     """
 
     classes: Mapping[str, ObjectClass]
@@ -148,6 +149,7 @@ class RelationGraph:
     reach: float
     roles: Mapping[str, str] = field(default_factory=dict)
     requirements: tuple[Requirement, ...] = ()
+    scenes: tuple[str, ...] = ()
 
     def node_of(self, name: str) -> str:
         """Return what statements about a name are about: a role is its own, a landmark counts as its class."""

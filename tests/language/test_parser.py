@@ -83,7 +83,7 @@ def test_a_diagnostic_shows_file_line_column_caret_and_a_suggestion():
         "  |\n"
         "3 |    left_of(Cup, Plate).\n"
         "  |    ^^^^^^^ no relation of this name here\n"
-        "   = help: did you mean 'left-of' (core.qsr:9)?"
+        "   = help: did you mean 'left-of' (core.qsr:11)?"
     )
 
 

@@ -141,3 +141,12 @@ def test_a_landmark_is_no_class():
 
 def test_what_is_shown_of_knowledge_is_not_all_it_was_built_from():
     assert "Document" not in repr(KNOWN)
+
+
+def test_scenes_are_drawn_of_what_is_known():
+    named = qsr.parse_knowledge("dynamic A, B. scene pair(A, B) ⇔ left-of(A, B).")
+    for query in ("sample pair 3?", "sample A?", "sample?"):
+        with pytest.raises(UnansweredQueryError):
+            named.ask(query)
+    with pytest.raises(qsr.UnknownNameError, match="unknown scene or class 'pear'; did you mean 'pair'"):
+        named.ask("sample pear 3?")

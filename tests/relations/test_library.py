@@ -1,5 +1,9 @@
+import pytest
+
 import qsrlang as qsr
-from qsrlang.relations.imports import shipped_knowledge
+from qsrlang.relations.build import build_graph
+from qsrlang.relations.imports import find_knowledge, read_source, shipped_knowledge
+from qsrlang.relations.linting.lint import lint
 
 
 def write(folder, name, text):
@@ -102,3 +106,10 @@ def test_observations_that_say_the_same_are_counted_together():
     answer = qsr.parse_knowledge(text).where("A")
     assert [round(weight, 12) for weight in answer.weights] == [round(6 / 7, 12), round(1 / 7, 12)]
     assert answer.components[0].statements == ("<text>:1: observe 2 × right-of(A, M) (and 2 more)",)
+
+
+@pytest.mark.parametrize("name", shipped_knowledge())
+def test_shipped_files_are_laid_out_and_lint_free(name):
+    source = read_source(find_knowledge(name))
+    assert qsr.format_source(source) == source.text
+    assert [finding.render() for finding in lint(build_graph(source), source)] == []

@@ -8,7 +8,7 @@ from qsrlang.language.source import Source, read_source
 from qsrlang.relations.build import build_graph
 from qsrlang.relations.imports import find_knowledge, shipped_knowledge
 from qsrlang.relations.imports import read_source as read_shipped
-from qsrlang.relations.lint import RULES, lint
+from qsrlang.relations.linting.lint import RULES, lint
 
 DECLARED = "dynamic Cup, Plate, Spoon.\nstatic Armchair { front: yes }, Desk.\n"
 
