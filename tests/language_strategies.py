@@ -11,8 +11,8 @@ from qsrlang.language import questions as q
 from qsrlang.language import statements as t
 from qsrlang.language import syntax as s
 from qsrlang.language.grammar import keywords
+from qsrlang.language.nodes.questions import MAX_SCENES
 from qsrlang.language.quantities import to_si
-from qsrlang.language.question_nodes import MAX_SCENES
 from qsrlang.language.source import Source, Span
 
 NOWHERE = Span(Source("<drawn>", ""), 0, 0)

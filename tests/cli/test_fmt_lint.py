@@ -3,7 +3,7 @@ import json
 
 import pytest
 
-from qsrlang.relations.lint import RULES
+from qsrlang.relations.linting.lint import RULES
 
 LOOSE = "dynamic Cup,Plate. # small things\r\nobserve 3*left-of(Cup,Plate)&close-to(Cup,Plate).\r\n"
 TIDY = "dynamic Cup, Plate.  # small things\nobserve 3 × left-of(Cup, Plate) ∧ close-to(Cup, Plate).\n"

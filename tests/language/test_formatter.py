@@ -6,12 +6,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from language_strategies import documents
 
-from qsrlang.language.formatter import format_source
-from qsrlang.language.layout import WIDTH
 from qsrlang.language.parser import MAX_NESTING, parse
-from qsrlang.language.printer import print_document
+from qsrlang.language.printing.formatter import format_source
+from qsrlang.language.printing.layout import WIDTH
+from qsrlang.language.printing.printer import print_document
+from qsrlang.language.printing.spelling import SIGNS
 from qsrlang.language.source import Source
-from qsrlang.language.spelling import SIGNS
 from qsrlang.relations.imports import find_knowledge, read_source, shipped_knowledge
 
 SPELLINGS = sorted(SIGNS)

@@ -1,8 +1,8 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from qsrlang.language.layout import Break, Close, Open, lay_out
-from qsrlang.language.sentence import Remark
+from qsrlang.language.printing.layout import Break, Close, Open, lay_out
+from qsrlang.language.printing.sentence import Remark
 
 CALL = [
     "f(",

@@ -5,11 +5,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from language_strategies import documents, queries
 
-from qsrlang.language.amounts import amount_text, number_text, quantity_text
 from qsrlang.language.parser import parse, parse_query
-from qsrlang.language.printer import print_document, print_formula, print_query, print_statement
+from qsrlang.language.printing.amounts import amount_text, number_text, quantity_text
+from qsrlang.language.printing.printer import print_document, print_formula, print_query, print_statement
+from qsrlang.language.printing.spelling import SIGNS
 from qsrlang.language.source import Source, Span
-from qsrlang.language.spelling import SIGNS
 from qsrlang.language.syntax import Dimension, Quantity
 from qsrlang.relations.imports import find_knowledge, read_source, shipped_knowledge
 
