@@ -10,9 +10,9 @@ from lark import Lark
 
 from qsrlang.language.lexing import ExpectingLexer, fixed_spellings
 from qsrlang.language.nodes.questions import NodeBuilder
+from qsrlang.language.table import STARTS as STARTS
+from qsrlang.language.table import load_parser, make_parser
 from qsrlang.resources import resource_path
-
-STARTS = ("statement", "context_head", "query", "landmark_body", "document")
 
 _NAMES = {
     "NAME": "a name",
@@ -34,18 +34,9 @@ class Reader(NamedTuple):
 @cache
 def reader() -> Reader:
     """Return the parser of the language."""
-    builder = NodeBuilder()
-    lark = Lark(
-        grammar_text(),
-        parser="lalr",
-        lexer="contextual",
-        start=list(STARTS),
-        keep_all_tokens=True,
-        maybe_placeholders=False,
-        transformer=builder,
-        _plugins={"ContextualLexer": ExpectingLexer},
-    )
-    return Reader(lark, builder)
+    builder, text = NodeBuilder(), grammar_text()
+    options = {"transformer": builder, "_plugins": {"ContextualLexer": ExpectingLexer}}
+    return Reader(load_parser(text, **options) or make_parser(text, **options), builder)
 
 
 def grammar_text() -> str:
