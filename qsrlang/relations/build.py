@@ -57,12 +57,21 @@ def build_graph(
 
 
 def _ordered(found: tuple[Diagnostic, ...], source: Source) -> Diagnostics:
-    """Return the findings in the order of their places, those of the file itself first, up to MAX_FINDINGS of them."""
-    ordered = sorted(found, key=lambda finding: (finding.span.source.name != source.name, finding.span.start))
+    """Return the findings in the order of their places, those of the file itself first, up to MAX_FINDINGS of them.
+
+    Of imported files, only errors, and what involves the file itself.
+    """
+    heard = [finding for finding in found if finding.is_error or _involves(finding, source)]
+    ordered = sorted(heard, key=lambda finding: (finding.span.source.name != source.name, finding.span.start))
     if len(ordered) > MAX_FINDINGS:
         message = f"{len(ordered)} findings; the first {MAX_FINDINGS} are shown"
         ordered[MAX_FINDINGS:] = [Diagnostic("Q107", message, ordered[MAX_FINDINGS].span)]
     return Diagnostics(ordered)
+
+
+def _involves(finding: Diagnostic, source: Source) -> bool:
+    places = (finding.span, *(label.span for label in finding.labels))
+    return any(place.source is source for place in places)
 
 
 def _graph(layers: tuple[Layer, ...], symbols: Symbols, circumstances: Circumstances) -> RelationGraph:

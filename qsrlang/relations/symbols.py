@@ -207,7 +207,9 @@ class Symbols:
     def _unknown(self, code: str, kind: str, name: Name, known: Iterable[str]) -> None:
         if name.text in self.lost:
             return
-        nearest = difflib.get_close_matches(name.text, list(known), n=1)
+        known = list(known)
+        qualified = [one for one in known if one.endswith(f".{name.text}")]
+        nearest = qualified if len(qualified) == 1 else difflib.get_close_matches(name.text, known, n=1)
         note = (
             f"no {kind} of this name here{_IMPORTS.get(self.imports, f' or in the {self.imports} imports')}"
         )

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from qsrlang.language.diagnostics import Diagnostic, Edit
+from qsrlang.language.diagnostics import Diagnostic, Edit, Label
 from qsrlang.language.lexing import Word
 from qsrlang.language.quantities import EXAMPLES, likely_unit, to_si
 from qsrlang.language.source import Source, Span
@@ -148,12 +148,17 @@ class Builder:
 
     def fields(self, children: list[Any], what: str) -> dict[str, Any]:
         """Return the fields among the children by their names, each given once."""
-        found: dict[str, Any] = {}
+        found: dict[str, Field] = {}
         for field in nodes_of(children, Field):
-            if field.key in found:
-                self.refuse("Q305", f"the {what} '{field.key}' is given twice", field.span)
-            found[field.key] = field.value
-        return found
+            first = found.setdefault(field.key, field)
+            if first is not field:
+                self.refuse_again(f"the {what} '{field.key}'", field.span, first.span)
+        return {key: field.value for key, field in found.items()}
+
+    def refuse_again(self, what: str, span: Span, first: Span) -> None:
+        """Report what is given twice, with both places."""
+        labels = (Label(first, "first given here"),)
+        self.findings.append(Diagnostic("Q305", f"{what} is given twice", span, labels=labels))
 
     def minutes(self, token: Word, latest: int = MINUTES_A_DAY - 1) -> int:
         """Return a time of day in minutes after midnight."""

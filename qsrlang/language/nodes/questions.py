@@ -76,9 +76,9 @@ class NodeBuilder(StatementNodes):
     def circumstances(self, children: list[Any]) -> q.Circumstances:
         """`in room r133, weekend at 09:30`"""
         rooms, days = nodes_of(children, Room), nodes_of(children, Days)
-        for more, what in ((rooms[1:], "room"), (days[1:], "day")):
-            for one in more:
-                self.refuse("Q305", f"the {what} is given twice", one.span)
+        for given, what in ((rooms, "room"), (days, "day")):
+            for again in given[1:]:
+                self.refuse_again(f"the {what}", again.span, given[0].span)
         time = token_of(children, "TIME")
         return q.Circumstances(
             self.span(children),
