@@ -64,6 +64,22 @@ def views() -> None:
     show("occlusion, 100,000 rays through noise", took, f"{len(ends) / took / 1e6:.1f} M rays/s")
 
 
+def relations() -> None:
+    points = np.random.default_rng(0).normal(size=(3, 2_000_000, 2))
+    took = seconds(lambda: qsr.qualify(*points), 3)
+    limit = seconds(lambda: points[1] - points[0], 3)
+    rate = points.shape[1] / took / 1e6
+    show("TPCC relations of 2,000,000 triples", took, f"{rate:.0f} M/s, {took / limit:.1f} x one difference")
+
+
+def assumptions() -> None:
+    known = qsr.load("office/desk").with_landmarks(MONITOR)
+    for query in ("prob right-of(Cup, Keyboard)?", "where Cup given close-to(Cup, Keyboard)?"):
+        show(f"{query[:-1]}, 10,000 draws", seconds(lambda query=query: known.ask(query)), "")
+
+
 if __name__ == "__main__":
     inference()
+    assumptions()
+    relations()
     views()
