@@ -15,9 +15,11 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 from matplotlib.image import imsave
+from pygments import highlight
+from pygments.formatters.img import ImageFormatter
 
 import qsrlang as qsr
-from qsrlang.editor.code_picture import code_picture
+from qsrlang.editor.highlighting import DarkStyle, QSRLexer
 from qsrlang.resources import resource_path
 
 DOCS = Path(__file__).parent
@@ -43,9 +45,19 @@ def draw_mixtures() -> None:
 
 def draw_code() -> None:
     """The Fig. 2 file as an editor shows it."""
-    font = Path(matplotlib.get_data_path(), "fonts", "ttf", "DejaVuSansMono.ttf")
+    formatter = ImageFormatter(
+        style=DarkStyle,
+        font_name=str(Path(matplotlib.get_data_path(), "fonts", "ttf", "DejaVuSansMono.ttf")),
+        font_size=20,
+        image_pad=18,
+        line_pad=4,
+        line_number_bg=DarkStyle.background_color,
+        line_number_fg=DarkStyle.line_number_color,
+        line_number_separator=False,
+        line_number_pad=12,
+    )
     text = resource_path("knowledge", "office", "desk.qsr").read_text(encoding="utf-8")
-    (IMAGES / "highlighting.png").write_bytes(code_picture(text, font))
+    (IMAGES / "highlighting.png").write_bytes(highlight(text, QSRLexer(), formatter))
 
 
 def draw_room() -> None:
