@@ -64,14 +64,15 @@ def conditions_on(graph: RelationGraph, names: Sequence[str], given: Formula | N
     """Return what is given, and the requirements that speak of what the names depend on, or of what those do."""
     found = [] if given is None else [Condition(given, None, " ".join(given.span.text.split()))]
     open_ones = [Condition(one.formula, one.share, one.statement.text) for one in graph.requirements]
-    while True:
+    while open_ones:
         named = [*names, *(name for one in found for name in objects_of(one.formula))]
         reached = _depends_on(graph, named)
         linked = [one for one in open_ones if reached & set(objects_of(one.formula))]
         if not linked:
-            return tuple(found)
+            break
         found += linked
         open_ones = [one for one in open_ones if one not in linked]
+    return tuple(found)
 
 
 def draw_scenes(
