@@ -8,11 +8,12 @@ from enum import Enum
 
 from qsrlang.language.source import Source, Span
 from qsrlang.language.splitting import Kind, split
+from qsrlang.language.words import LETTER, MARKS
 
 MAX_WORD = 200
 
 _LINE = re.compile(r'"[^"]*"|(?P<comment>#.*)|(?P<string>"[^"]*$)')
-_WORD = re.compile(r"[^\W\d][\w.-]*$")
+_WORD = re.compile(rf"{LETTER}[\w{MARKS}.-]*$")
 
 
 class Surroundings(Enum):

@@ -12,9 +12,10 @@ from qsrlang.language.diagnostics import Edit
 from qsrlang.language.grammar import keywords
 from qsrlang.language.source import Source
 from qsrlang.language.splitting import Kind, Piece, split
+from qsrlang.language.words import WORD
 from qsrlang.relations.symbols import flat
 
-_NAME = re.compile(r"[^\W\d]\w*(?:-\w+)*")
+_NAME = re.compile(WORD)
 
 
 class RenamingError(QSRError):

@@ -29,6 +29,7 @@ from qsrlang.language.statements import (
 )
 from qsrlang.language.syntax import Formula
 from qsrlang.language.unexpected import QUERIES_ELSEWHERE, Rest, explain, rest_after_missing_stop
+from qsrlang.language.words import WORD
 
 LANGUAGE_VERSION = 1
 MAX_NESTING = 100
@@ -36,7 +37,7 @@ MAX_FINDINGS = 10_000
 CONTEXTUAL = (Scene, Believe, Observe, ObserveScene, Require)
 
 _LOCK = Lock()
-_NAME = re.compile(r"[^\W\d]\w*(?:-\w+)*")
+_NAME = re.compile(WORD)
 _DEFINES = re.compile(r"(?:surface|static|dynamic|landmark|relation|scene)(?![\w-])")
 
 
@@ -86,7 +87,7 @@ def parse_source(source: Source) -> Parsed:
 
 def parse_query(text: str) -> Query:
     """Parse one query, such as `where Cup?`; the question mark may be left out."""
-    closed = text if text.rstrip().endswith("?") else text.rstrip() + "?"
+    closed = text if text.rstrip().endswith("?") else text.rstrip() + ("\n?" if "#" in text else "?")
     query: Query = _parse_alone(closed, "query", "<query>")
     return query
 
@@ -159,6 +160,7 @@ def _add(statement: Statement, doc: str, reading: _Reading) -> None:
         inside.append(documented)
     else:
         labels = (Label(head.span, "the context begins here"),)
+        reading.lost.update(_NAME.findall(statement.span.text))
         note = "only scene, believe, observe and require can"
         reading.report(
             "Q106", "this statement cannot stand in a context", statement.span, note=note, labels=labels

@@ -11,6 +11,7 @@ from typing import NamedTuple
 from qsrlang.language.source import Source, Span
 
 MAX_LINE = 200
+_UNSEEN_CATEGORIES = ("Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp")
 _UNSEEN = "\N{REPLACEMENT CHARACTER}"
 
 
@@ -53,9 +54,7 @@ def rows(head: str, marks: Iterable[Mark], help_text: str) -> Iterator[Row]:
 
 def visible(text: str) -> str:
     """Return a text with a sign in place of every character that has no shape of its own."""
-    return "".join(
-        _UNSEEN if unicodedata.category(one) in ("Cc", "Cf", "Cs", "Co", "Cn") else one for one in text
-    )
+    return "".join(_UNSEEN if unicodedata.category(one) in _UNSEEN_CATEGORIES else one for one in text)
 
 
 def _excerpt(marks: list[Mark], gutter: str) -> Iterator[Row]:

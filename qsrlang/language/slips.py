@@ -9,6 +9,7 @@ from typing import NamedTuple
 from qsrlang.language.diagnostics import Edit
 from qsrlang.language.grammar import keywords
 from qsrlang.language.source import Span
+from qsrlang.language.words import WORD
 
 # Signs that look like one of the language's, from typesetting and from keyboards of other scripts.
 LOOK_ALIKES = {
@@ -63,9 +64,9 @@ WORDS = {
 
 DIRECTIONS = frozenset({"north", "east", "south", "west", "left", "right", "forward", "backward"})
 
-NAME = re.compile(r"[^\W\d]\w*(?:-\w+)*")
+NAME = re.compile(WORD)
 _LONGEST_WORD = 100
-_LAST_WORD = re.compile(r"([^\W\d]\w*(?:-\w+)*|[^\w\s])[^\S\n]*\Z")
+_LAST_WORD = re.compile(rf"({WORD}|[^\w\s])[^\S\n]*\Z")
 
 
 class Remedy(NamedTuple):

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from qsrlang.language.source import Source, Span
+from qsrlang.language.words import LETTER, MARKS
 
 BEGINNING = (
     r"(?:language|import|defaults|surface|static|dynamic|landmark|relation"
@@ -16,7 +17,7 @@ BEGINNING = (
 # What must not mislead the scanner: strings, comments, and full stops inside numbers and qualified names. A full
 # stop before a word that begins a statement ends one all the same.
 _MARK = re.compile(
-    rf'"[^"\n]*"|#[^\n]*|\d+\.\d+|(?<=\w)\.(?=[^\W\d])(?!{BEGINNING}[\s(])|(?P<mark>[(){{}}.?])'
+    rf'"[^"\n]*"|#[^\n]*|\d+\.\d+|(?<=[\w{MARKS}])\.(?={LETTER})(?!{BEGINNING}[\s(])|(?P<mark>[(){{}}.?])'
 )
 _BLANK = re.compile(r"(?:\s+|#[^\n]*)*")
 _WORD = re.compile(r'"[^"\n]*"|#[^\n]*|\S')

@@ -15,11 +15,10 @@ from qsrlang.language.remedies import remedy
 from qsrlang.language.slips import Remedy, Slip
 from qsrlang.language.source import Span
 from qsrlang.language.splitting import BEGINNING, last_word_end
+from qsrlang.language.words import WORD
 
 _MAX_EXPECTED = 14
-_WORD = re.compile(
-    r'[^\W\d]\w*(?:-\w+)*|\d+(?:\.\d+)?(?:-?[^\W\d][\w-]*)?|"[^"\n]*"|::|<?[-=]+>|==|:[=-]|\|\||\+-|\S'
-)
+_WORD = re.compile(rf'{WORD}|\d+(?:\.\d+)?(?:-?[^\W\d][\w-]*)?|"[^"\n]*"|::|<?[-=]+>|==|:[=-]|\|\||\+-|\S')
 _STATEMENT = re.compile(BEGINNING)
 
 

@@ -47,7 +47,7 @@ def build_graph(
     """
     library = read_library(source, opened)
     statements = [statement for document in library.documents for statement in document.statements]
-    symbols = Symbols(library.lost, max(0, len(library.documents) - 2))
+    symbols = Symbols(library.lost, max(0, len(library.documents) - 2), source)
     symbols.gather(statements)
     layers = build_layers(statements, symbols)
     report_unanchored(symbols)

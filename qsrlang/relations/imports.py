@@ -6,12 +6,14 @@ import os
 from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from types import MappingProxyType
+from typing import NamedTuple
 
 from qsrlang.errors import FileError
 from qsrlang.language.diagnostics import Diagnostic, Label
-from qsrlang.language.parser import LANGUAGE_VERSION, parse_source
+from qsrlang.language.parser import LANGUAGE_VERSION, Parsed, parse_source
 from qsrlang.language.source import Source
 from qsrlang.language.source import read_source as read_file
 from qsrlang.language.statements import Document, Import, Landmark, Language, Relation, Scene
@@ -66,7 +68,7 @@ class _Reading:
 
 def read_library(source: Source, opened: Mapping[Path, Source] = NOTHING_OPENED) -> Library:
     """Read a source with all it imports, each file once, so cycles are fine; `opened` sources stand for their files."""
-    core = read_source(resource_path("knowledge", "core.qsr"))
+    core = _core().source
     is_core = source.path is not None and source.path.resolve() == (core.path or Path()).resolve()
     first = [_Request(one) for one in ([source] if is_core else [core, source])]
     reading = _Reading(_roots(source), opened, deque(first))
@@ -105,6 +107,18 @@ def shipped_knowledge() -> list[str]:
     return sorted(path.relative_to(root).with_suffix("").as_posix() for path in root.rglob("*.qsr"))
 
 
+class _Core(NamedTuple):
+    source: Source
+    parsed: Parsed
+
+
+@cache
+def _core() -> _Core:
+    """Return the built-in definitions, which do not change while the program runs."""
+    source = read_source(resource_path("knowledge", "core.qsr"))
+    return _Core(source, parse_source(source))
+
+
 def _roots(source: Source) -> tuple[Path, ...]:
     """Return the folders that imports may lead into: the first file's, those of QSR_PATH, and the shipped one."""
     first = source.path.parent if source.path else Path()
@@ -113,7 +127,7 @@ def _roots(source: Source) -> tuple[Path, ...]:
 
 
 def _read(request: _Request, reading: _Reading) -> None:
-    parsed = parse_source(request.source)
+    parsed = _core().parsed if request.source is _core().source else parse_source(request.source)
     document = parsed.document
     if request.prefix:
         document = under_prefix(document, request.prefix, reading.built_in)

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
 from qsrlang.language.diagnostics import Diagnostic, Edit, Label, Severity
+from qsrlang.language.quantities import likely_unit
+from qsrlang.language.source import Source
 from qsrlang.language.statements import (
     Context,
     Declaration,
@@ -20,7 +22,7 @@ from qsrlang.language.statements import Landmark as LandmarkNode
 from qsrlang.language.statements import (
     Relation as RelationNode,
 )
-from qsrlang.language.syntax import Atom, Dimension, Name, Node, Role
+from qsrlang.language.syntax import Atom, Dimension, Name, Node, Quantity, Role
 from qsrlang.relations.calculus import Relation
 from qsrlang.relations.graph import Landmark, ObjectClass
 from qsrlang.relations.values import class_value, landmark_value, relation_value
@@ -37,11 +39,12 @@ class Symbols:
 
     `places` tells where each (kind, name) is defined, kind one of class, landmark, relation and scene; `lost` are
     names whose definition could not be read, so that no further error follows from that; `imports` is how many
-    files are imported; `related` are the atoms that say where something is.
+    files are imported, and `source` the file that imports them; `related` are the atoms that say where something is.
     """
 
     lost: frozenset[str] = frozenset()
     imports: int = 0
+    source: Source | None = None
     classes: dict[str, ObjectClass] = field(default_factory=dict)
     landmarks: dict[str, Landmark] = field(default_factory=dict)
     relations: dict[str, Relation] = field(default_factory=dict)
@@ -118,26 +121,39 @@ class Symbols:
                 self._add("Q208", "scene", self.scenes, name, statement)
             case Defaults():
                 for name, quantity in statement.values:
-                    self._set_default(name, quantity.dimension, quantity.value)
+                    self._set_default(name, quantity)
 
     def _add(self, code: str, kind: str, table: dict[str, _T], name: Name, value: _T) -> None:
         first = self.places.setdefault((kind, name.text), name)
         if first is name:
             table[name.text] = value
             return
-        labels = (Label(first.span, "first defined here"),)
-        self.report(code, f"{kind} '{name.text}' is defined twice", name, "and here again", labels=labels)
+        message = f"{kind} '{name.text}' is defined twice"
+        if first.span.source is self.source and name.span.source is not self.source:
+            labels = (Label(name.span, "defined here too"),)
+            self.report(code, message, first, "an import defines it", labels=labels)
+        else:
+            labels = (Label(first.span, "first defined here"),)
+            self.report(code, message, name, "and here again", labels=labels)
 
-    def _set_default(self, name: Name, dimension: Dimension, value: float) -> None:
+    def _set_default(self, name: Name, quantity: Quantity) -> None:
         expected = _DEFAULTS.get(name.text)
         if expected is None:
             self._unknown("Q210", "default", name, _DEFAULTS)
-        elif dimension is not expected:
-            self.report("Q302", f"the default '{name}' is {expected.value}", name)
-        elif value <= 0.0:
-            self.report("Q303", f"the default '{name}' must be positive", name)
+        elif quantity.dimension is Dimension.NUMBER and expected is Dimension.LENGTH:
+            unit = likely_unit(quantity.value, expected)
+            end = replace(quantity.span, start=quantity.span.end)
+            message, help_text = f"the default '{name}' needs a unit", f"write '{quantity.span.text} {unit}'"
+            edits = (Edit(end, f" {unit}"),)
+            self.diagnostics.append(
+                Diagnostic("Q301", message, quantity.span, "", help_text, edits=edits, sure=False)
+            )
+        elif quantity.dimension is not expected:
+            self.report("Q302", f"the default '{name}' is {expected.value}", quantity)
+        elif quantity.value <= 0.0:
+            self.report("Q303", f"the default '{name}' must be positive", quantity)
         else:
-            self.defaults[name.text] = value
+            self.defaults[name.text] = quantity.value
 
     def _check(self, statement: Statement) -> None:
         match statement:
@@ -190,7 +206,8 @@ class Symbols:
 
     def _check_relation(self, relation: RelationNode) -> None:
         if len(relation.parameters) not in (2, 3):
-            message = f"'{relation.name}' has {len(relation.parameters)} parameters"
+            count = len(relation.parameters)
+            message = f"'{relation.name}' has {count} parameter{'s' if count > 1 else ''}"
             note = "a relation has a referent and one or two relata"
             self.report("Q404", message, relation.parameters[-1], note)
         if relation.angle is None and relation.distance is None and relation.region is None:

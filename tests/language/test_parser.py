@@ -1,4 +1,5 @@
 import math
+import re
 
 import pytest
 from hypothesis import given
@@ -6,8 +7,10 @@ from hypothesis import strategies as st
 
 import qsrlang as qsr
 from qsrlang.language import syntax as s
+from qsrlang.language.grammar import reader
 from qsrlang.language.parser import parse_source
 from qsrlang.language.source import MAX_SOURCE_BYTES, Source, read_source
+from qsrlang.language.words import WORD
 
 FORMULA = """scene(Monitor, Keyboard, Laptop, Cup, Bottle) ⇔
     in-front-of(Keyboard, Monitor) ∧ left-of(Laptop, Keyboard) ∧ right-of(Cup, Keyboard) ∧
@@ -139,3 +142,27 @@ def test_windows_line_ends_and_a_byte_order_mark_change_nothing(tmp_path):
     path = tmp_path / "w.qsr"
     path.write_bytes(b"\xef\xbb\xbf" + FORMULA.replace("\n", "\r\n").encode())
     assert parse_source(read_source(path)).document == qsr.parse(FORMULA).document
+
+
+def test_names_may_use_any_script_and_the_grammar_says_so():
+    names = [
+        "Cup",
+        "Tisch-Größe",
+        "杯子",
+        "प्याला",
+        "ถ้วย",
+        "కప్పు",
+        "பாத்திரம்",
+        "कप-बोर्ड",
+        "e\u0301tage\u0300re",
+        "чашка",
+    ]
+    declared = only(f"static {', '.join(names)}.")
+    assert [one.name.text for one in declared.classes] == names
+    terminal = next(one for one in reader().lark.terminals if one.name == "NAME")
+    word = re.sub(r"\\u([0-9a-f]{4})", lambda match: chr(int(match[1], 16)), WORD)
+    assert terminal.pattern.value == rf"{word}(?:\.{word})*"
+
+
+def test_a_query_may_end_in_a_comment():
+    assert qsr.parse_query("where Cup # in the kitchen") == qsr.parse_query("where Cup?")
