@@ -2,7 +2,8 @@
 
 from lark import Lark
 
-from qsrlang.language.grammar import STARTS, grammar_text
+from qsrlang.language.grammar import grammar_text
+from qsrlang.language.table import STARTS
 
 IGNORED = {"WS", "COMMENT"}
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TypeAlias
 
 from lsprotocol import types
 
@@ -17,8 +16,6 @@ from qsrlang.relations.linting.lint import lint
 
 MAX_SHOWN = 1000
 """More findings of one file are not sent."""
-
-Addresses: TypeAlias = Callable[[Source], str]
 
 _SEVERITIES = {
     Severity.ERROR: types.DiagnosticSeverity.Error,

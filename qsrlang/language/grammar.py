@@ -10,7 +10,6 @@ from lark import Lark
 
 from qsrlang.language.lexing import ExpectingLexer, fixed_spellings
 from qsrlang.language.nodes.questions import NodeBuilder
-from qsrlang.language.table import STARTS as STARTS
 from qsrlang.language.table import load_parser, make_parser
 from qsrlang.resources import resource_path
 

@@ -14,6 +14,7 @@ from qsrlang.language.diagnostics import Diagnostic, Diagnostics, Edit, Label, r
 from qsrlang.language.grammar import reader
 from qsrlang.language.lexing import Excerpt, Word
 from qsrlang.language.questions import Query
+from qsrlang.language.remedies import QUERIES_ELSEWHERE
 from qsrlang.language.source import Source, Span
 from qsrlang.language.splitting import Kind, Piece, split
 from qsrlang.language.statements import (
@@ -28,7 +29,7 @@ from qsrlang.language.statements import (
     Statement,
 )
 from qsrlang.language.syntax import Formula
-from qsrlang.language.unexpected import QUERIES_ELSEWHERE, Rest, explain, rest_after_missing_stop
+from qsrlang.language.unexpected import Rest, explain, rest_after_missing_stop
 from qsrlang.language.words import WORD
 
 LANGUAGE_VERSION = 1

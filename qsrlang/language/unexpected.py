@@ -10,7 +10,6 @@ from lark.exceptions import UnexpectedInput
 
 from qsrlang.language.diagnostics import Diagnostic
 from qsrlang.language.grammar import describe
-from qsrlang.language.remedies import QUERIES_ELSEWHERE as QUERIES_ELSEWHERE
 from qsrlang.language.remedies import remedy
 from qsrlang.language.slips import Remedy, Slip
 from qsrlang.language.source import Span

@@ -7,11 +7,12 @@ from hypothesis import strategies as st
 from lark import Lark, Token, Tree
 from lark.lexer import Lexer
 
-from qsrlang.language.grammar import STARTS, grammar_text, reader
+from qsrlang.language.grammar import grammar_text, reader
 from qsrlang.language.lexing import Excerpt, Word
 from qsrlang.language.nodes.questions import NodeBuilder
 from qsrlang.language.parser import parse
 from qsrlang.language.source import Source, Span
+from qsrlang.language.table import STARTS
 
 
 class GivenTokens(Lexer):

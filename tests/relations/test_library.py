@@ -113,3 +113,29 @@ def test_shipped_files_are_laid_out_and_lint_free(name):
     source = read_source(find_knowledge(name))
     assert qsr.format_source(source) == source.text
     assert [finding.render() for finding in lint(build_graph(source), source)] == []
+
+
+SEVEN = """surface Desk { size: 150 cm × 80, height: 75 cm }.
+static Monitor { size: 55 cm × 20 cm × 40 cm }.
+static Monitor.
+dynamic Keyboard, Cup
+observe 3 right-of(Cup, Keyboard).
+observe left_of(Cup, Keyboard).
+observe left-of(Cup, Monitor) wrt intrinsic.
+believe 0.7 :: left-of(Cup, Keyboard) | 0.6 :: right-of(Cup, Keyboard).
+"""
+
+
+def test_seven_mistakes_are_seven_findings_of_one_run_each_at_its_place(tmp_path):
+    found = qsr.check(write(tmp_path, "seven.qsr", SEVEN))
+    assert [(one.code, one.span.line, one.span.text) for one in found] == [
+        ("Q301", 1, "80"),
+        ("Q205", 3, "Monitor"),
+        ("Q104", 4, "\n"),
+        ("Q101", 5, "right-of"),
+        ("Q203", 6, "left_of"),
+        ("Q406", 7, "Monitor"),
+        ("Q401", 8, "believe 0.7 :: left-of(Cup, Keyboard) | 0.6 :: right-of(Cup, Keyboard)"),
+    ]
+    assert found.errors == found
+    assert [one.code for one in qsr.check_text(SEVEN)] == [one.code for one in found]
