@@ -12,7 +12,6 @@
   + MissingFacingError        a landmark without a heading where a frame of reference needs one
   + NoRoomError               relations that leave no room on their support
   + ImpossibleConditionError  an assumption or requirement that no possible scene meets
-  + TooManyWorldsError        knowledge with more combinations than the named limit
   + UnansweredQueryError      a query that can be written but that this release does not answer
 """
 
@@ -120,17 +119,6 @@ class NoRoomError(QSRError):
         self.what, self.support = what, support
         super().__init__(
             f"{what}: no room is left on {support}; check the poses and sizes or use another relation"
-        )
-
-
-class TooManyWorldsError(QSRError):
-    """Knowledge with more combinations of alternatives than the named limit allows."""
-
-    def __init__(self, target: str, limit: int) -> None:
-        self.target, self.limit = target, limit
-        super().__init__(
-            f"'{target}' depends on more than {limit} combinations of alternatives; "
-            "name fewer alternatives or landmarks"
         )
 
 

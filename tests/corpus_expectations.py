@@ -101,6 +101,7 @@ class Program:
         parts = [f"arity {one.arity}", f"angle {density(one.angle)}", f"distance {density(one.distance)}"]
         parts += [f"region {one.region}"] if one.region else []
         parts += [f"converse {one.converse}"] if one.converse else []
+        parts += [f"components {one.components}"] if one.components > 1 else []
         parts += [f"disjoint {', '.join(one.disjoint)}"] if one.disjoint else []
         return "; ".join([*parts, *(["symmetric"] if one.symmetric else [])])
 

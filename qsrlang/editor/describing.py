@@ -138,6 +138,8 @@ def _relation_facts(known: Relation) -> Iterator[str]:
         yield f"excludes: {', '.join(known.disjoint)}"
     if known.symmetric:
         yield "symmetric"
+    if known.components > 1:
+        yield f"{known.components} components"
 
 
 def _angle_words(density: Density | None, arity: int) -> str:

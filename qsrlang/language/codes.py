@@ -37,7 +37,7 @@ CODES = {
     "Q409": "equally specific contexts",
     "Q410": "a role that stands for two classes",
     "Q411": "a relation that says nothing",
-    "Q412": "a region beside an angle or a distance",
+    "Q412": "a region beside an angle, a distance or components",
     "Q501": "dynamic class used as landmark",
     "Q502": "class never declared",
     "Q503": "class never placed",

@@ -127,6 +127,7 @@ class Relation(Statement):
     converse: Name | None = None
     disjoint: tuple[Name, ...] = ()
     symmetric: bool = False
+    components: int = 1
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
+from scipy.special import ndtri
 
 from qsrlang.arrays import FloatArray
 from qsrlang.errors import ValueRangeError
@@ -36,21 +38,37 @@ class Bump:
 
     def nodes(self) -> tuple[FloatArray, FloatArray]:
         """Return angles (K,) and weights (K,) of a midpoint rule for integrals against this density."""
-        reach = min(0.5 * self.width, _REACH_IN_DEVIATIONS * self.deviation or math.inf)
-        offsets = (np.arange(_NODES) + 0.5) / _NODES * 2.0 * reach - reach
-        weights = self.pdf(self.mean + offsets)
-        return self.mean + offsets, weights / weights.sum()
+        return _nodes(self)
 
-    def sample(self, count: int, rng: np.random.Generator) -> FloatArray:
-        """Return `count` draws (count,) [rad]."""
+    @property
+    def cell(self) -> float:
+        """The width of the cell about each node [rad]."""
+        return 2.0 * self._half_range / _NODES
+
+    def quantile(self, shares: FloatArray) -> FloatArray:
+        """Return the angles (P,) below which shares (P,) of the mass lie, counted from the far side [rad]."""
         if self.deviation == 0.0:
-            return np.asarray(self.mean + self.width * (rng.random(count) - 0.5))
-        return np.asarray(rng.normal(self.mean, self.deviation, count))
+            return np.asarray(self.mean + self.width * (shares - 0.5))
+        return np.asarray(self.mean + self.deviation * ndtri(shares))
 
     @property
     def spread(self) -> float:
         """A width to compare terms by [rad]."""
         return min(self.width, 2.0 * self.deviation or math.inf)
+
+    @property
+    def _half_range(self) -> float:
+        return min(0.5 * self.width, _REACH_IN_DEVIATIONS * self.deviation or math.inf)
+
+
+@lru_cache(maxsize=256)
+def _nodes(density: Bump) -> tuple[FloatArray, FloatArray]:
+    angles = density.mean + ((np.arange(_NODES) + 0.5) / _NODES * 2.0 - 1.0) * density._half_range
+    weights = density.pdf(angles)
+    weights /= weights.sum()
+    for array in (angles, weights):
+        array.setflags(write=False)
+    return angles, weights
 
 
 def bump(density: Density | None) -> Bump:

@@ -34,7 +34,8 @@ class Where:
 
     `frame` is "map", or the class the mixture is relative to (x away from the viewer, y to its left).
     Component weights sum to 1 - elsewhere; those of `mixture` to 1. `assumed` are the texts of what was given or
-    required; the answer then comes from draws, `draws` of which would be as good if they were independent.
+    required; the answer then comes from draws, `draws` of which would be as good if they were independent. `dropped`
+    is the prior mass of the combinations of alternatives that were left out, 0 where none were.
     """
 
     target: str
@@ -44,6 +45,7 @@ class Where:
     components: tuple[Component, ...]
     assumed: tuple[str, ...] = ()
     draws: float | None = None
+    dropped: float = 0.0
 
     @property
     def weights(self) -> FloatArray:
@@ -78,6 +80,7 @@ class Where:
             "components": components,
             "assumed": list(self.assumed),
             "effective_draws": self.draws,
+            "dropped": self.dropped,
         }
 
     def __str__(self) -> str:
@@ -87,4 +90,5 @@ class Where:
             spread = f"{major:.3f} x {minor:.3f}"
             rows.append(f"{component.weight:7.3f} {x:8.3f} {y:8.3f} {spread:>15} {math.degrees(angle):11.1f}")
         rest = f", elsewhere {self.elsewhere:.3f}" if self.elsewhere > 0.0 else ""
+        rest += f", dropped {self.dropped:.2g}" if self.dropped > 0.0 else ""
         return "\n".join([f"where {self.target}, frame: {self.frame}{rest}", *rows])

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
+from collections.abc import Collection, Iterable
+
 from qsrlang.mixtures.roles import instances_in_roles
-from qsrlang.relations.graph import RelationGraph
+from qsrlang.relations.graph import Constraint, RelationGraph
 
 
 def placed_by(graph: RelationGraph, name: str) -> tuple[str, ...]:
@@ -41,3 +44,16 @@ def broken_chains(graph: RelationGraph, target: str) -> tuple[str, ...]:
         if ends:
             chains.append(f"{target} - {relatum} ends at {', '.join(ends)}, which has no landmark")
     return tuple(chains)
+
+
+def needed_for(names: Collection[str], constraints: Iterable[Constraint]) -> frozenset[str]:
+    """Return the names that help to place some: themselves, the relata of their constraints, and so on."""
+    relata: dict[str, list[str]] = defaultdict(list)
+    for one in constraints:
+        relata[one.referent] += one.relata
+    needed, waiting = set(names), list(names)
+    while waiting:
+        fresh = [name for name in relata[waiting.pop()] if name not in needed]
+        needed.update(fresh)
+        waiting += fresh
+    return frozenset(needed)

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Protocol
+from functools import lru_cache
+from typing import NamedTuple, Protocol
 
 import numpy as np
+from scipy.special import ndtri
 
 from qsrlang.arrays import FloatArray
 from qsrlang.geometry.angles import unit
@@ -18,14 +20,29 @@ from qsrlang.mixtures.supports import Support
 from qsrlang.relations.graph import AtomicRelation, Constraint, RelationGraph
 
 
+class Turning(NamedTuple):
+    """Mean (2,) and covariance (2, 2) of x - relatum in a frame that turns with the relatum's heading, the same
+    wherever it stands.
+    """
+
+    mean: FloatArray
+    covariance: FloatArray
+
+
 class Conditional(Protocol):
     """p(x | state), for states (P, n): exact moments, draws and densities."""
+
+    def turning(self, heading: float, is_certain: bool) -> Turning | None:
+        """Return the moments in the relatum's frame; None where they depend on more than its heading.
+
+        Where the heading [rad] is certain, axes that do not turn with it are still the same for every state.
+        """
 
     def moments(self, states: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return mean (P, 2) and covariance (P, 2, 2) of x."""
 
-    def sample(self, states: FloatArray, rng: np.random.Generator) -> FloatArray:
-        """Return one draw (P, 2) from each state."""
+    def sample(self, states: FloatArray, uniforms: FloatArray) -> FloatArray:
+        """Return one draw (P, 2) from each state, made of uniform numbers (P, 3)."""
 
     def pdf(self, points: FloatArray, states: FloatArray) -> FloatArray:
         """Return the density (P,) of one point (P, 2) per state [1/m^2]."""
@@ -38,14 +55,23 @@ class PolarConditional:
     density: PolarDensity
     frames: tuple[Frame, ...]
     standpoint: Standpoint
+    part: tuple[int, int] = (0, 1)
+
+    def turning(self, heading: float, is_certain: bool) -> Turning | None:
+        """Return the moments in the relatum's frame, unless they depend on a place: of a support, viewer or relatum."""
+        if self.standpoint.second or self.density.support:
+            return None
+        stand = self.standpoint
+        axes = stand.relatum.turning_axes(self.frames, stand.viewer, heading, is_certain)
+        return None if axes is None else _turning(self.density, axes, self.part)
 
     def moments(self, states: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return mean (P, 2) and covariance (P, 2, 2) of x."""
-        return self.density.moments(self.stance(states))
+        return self.density.moments(self.stance(states), self.part)
 
-    def sample(self, states: FloatArray, rng: np.random.Generator) -> FloatArray:
-        """Return one draw (P, 2) from each state."""
-        return self.density.sample(self.stance(states), rng)
+    def sample(self, states: FloatArray, uniforms: FloatArray) -> FloatArray:
+        """Return one draw (P, 2) from each state, made of uniform numbers (P, 3)."""
+        return self.density.sample(self.stance(states), uniforms)
 
     def pdf(self, points: FloatArray, states: FloatArray) -> FloatArray:
         """Return the density (P,) of one point (P, 2) per state [1/m^2]."""
@@ -56,9 +82,8 @@ class PolarConditional:
         stand = self.standpoint
         axes = np.stack([stand.axes(states, frame) for frame in self.frames], axis=-1)
         support = None if stand.support is None else stand.support.poses(states)
-        return Stance(
-            stand.relatum.positions(states), stand.box_yaws(states), axes, support, stand.ends(states)
-        )
+        yaws = np.zeros(len(states)) if self.density.boxes.are_points else stand.box_yaws(states)
+        return Stance(stand.relatum.positions(states), yaws, axes, support, stand.ends(states))
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +94,15 @@ class FitConditional:
     frame: Frame
     standpoint: Standpoint
 
+    def turning(self, heading: float, is_certain: bool) -> Turning | None:
+        """Return the moments in the relatum's frame, unless the axis depends on where the relatum is."""
+        stand = self.standpoint
+        axes = stand.relatum.turning_axes((self.frame,), stand.viewer, heading, is_certain)
+        if axes is None or stand.second:
+            return None
+        basis = _bases(np.array(axes), self.frame)[0]
+        return Turning(basis @ np.array(self.fit.mean), basis @ self._covariance() @ basis.T)
+
     def moments(self, states: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return mean (P, 2) and covariance (P, 2, 2) of x."""
         basis = self._basis(states)
@@ -77,10 +111,10 @@ class FitConditional:
             0, 2, 1
         )
 
-    def sample(self, states: FloatArray, rng: np.random.Generator) -> FloatArray:
-        """Return one draw (P, 2) from each state."""
+    def sample(self, states: FloatArray, uniforms: FloatArray) -> FloatArray:
+        """Return one draw (P, 2) from each state, made of uniform numbers (P, 3)."""
         mean, _ = self.moments(states)
-        noise = rng.standard_normal((len(states), 2)) @ np.linalg.cholesky(self._covariance()).T
+        noise = ndtri(uniforms[:, :2]) @ np.linalg.cholesky(self._covariance()).T
         return np.asarray(mean + np.einsum("pij,pj->pi", self._basis(states), noise))
 
     def pdf(self, points: FloatArray, states: FloatArray) -> FloatArray:
@@ -91,8 +125,7 @@ class FitConditional:
         return np.asarray(np.exp(-0.5 * squares) / (2.0 * np.pi * np.sqrt(np.linalg.det(covariance))))
 
     def _basis(self, states: FloatArray) -> FloatArray:
-        axis = self.standpoint.axes(states, self.frame)
-        return np.stack([unit(axis), hand(self.frame) * unit(axis + 0.5 * np.pi)], axis=-1)
+        return _bases(self.standpoint.axes(states, self.frame), self.frame)
 
     def _covariance(self) -> FloatArray:
         (sx, sy), rho = self.fit.deviation, self.fit.correlation
@@ -106,23 +139,42 @@ class EitherConditional:
     first: Conditional
     second: Conditional
 
+    def turning(self, heading: float, is_certain: bool) -> Turning | None:
+        """Return None, for the way between two relata turns with both."""
+        return None
+
     def moments(self, states: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return mean (P, 2) and covariance (P, 2, 2) of x: E Q + Cov m (law of total variance)."""
         (m1, q1), (m2, q2) = self.first.moments(states), self.second.moments(states)
         half = 0.5 * (m1 - m2)
         return 0.5 * (m1 + m2), 0.5 * (q1 + q2) + half[:, :, None] * half[:, None, :]
 
-    def sample(self, states: FloatArray, rng: np.random.Generator) -> FloatArray:
-        """Return one draw (P, 2) from each state."""
+    def sample(self, states: FloatArray, uniforms: FloatArray) -> FloatArray:
+        """Return one draw (P, 2) from each state, made of uniform numbers (P, 3)."""
         draws = np.empty((len(states), 2))
-        heads = rng.random(len(states)) < 0.5
-        draws[heads] = self.first.sample(states[heads], rng)
-        draws[~heads] = self.second.sample(states[~heads], rng)
+        heads = uniforms[:, 0] < 0.5
+        again = np.column_stack([2.0 * uniforms[:, 0] - ~heads, uniforms[:, 1:]])
+        draws[heads] = self.first.sample(states[heads], again[heads])
+        draws[~heads] = self.second.sample(states[~heads], again[~heads])
         return draws
 
     def pdf(self, points: FloatArray, states: FloatArray) -> FloatArray:
         """Return the density (P,) of one point (P, 2) per state [1/m^2]."""
         return 0.5 * (self.first.pdf(points, states) + self.second.pdf(points, states))
+
+
+@lru_cache(maxsize=1024)
+def _turning(density: PolarDensity, axes: tuple[float, ...], part: tuple[int, int]) -> Turning:
+    stance = Stance(np.zeros((1, 2)), np.zeros(1), np.array([axes]))
+    (mean,), (covariance,) = density.moments(stance, part)
+    for array in (mean, covariance):
+        array.setflags(write=False)
+    return Turning(mean, covariance)
+
+
+def _bases(axes: FloatArray, frame: Frame) -> FloatArray:
+    """Return the axes (P,) of a frame and their left as columns (P, 2, 2)."""
+    return np.stack([unit(axes), hand(frame) * unit(axes + 0.5 * np.pi)], axis=-1)
 
 
 def frame_of(constraint: Constraint, atom: AtomicRelation) -> Frame:
@@ -142,13 +194,12 @@ def polar_conditional(
 
     A symmetric relation to two relata is the equal mixture of how it is seen from the one and from the other.
     """
-    seen = PolarConditional(*polar_density(graph, constraint, support), standpoint)
+    seen = PolarConditional(*polar_density(graph, constraint, support), standpoint, constraint.part)
     if constraint.towards is None or not constraint.atoms[0].relation.symmetric:
         return seen
     turned = replace(constraint, relatum=constraint.towards, towards=constraint.relatum)
-    return EitherConditional(
-        seen, PolarConditional(*polar_density(graph, turned, support), standpoint.turned())
-    )
+    back = PolarConditional(*polar_density(graph, turned, support), standpoint.turned(), constraint.part)
+    return EitherConditional(seen, back)
 
 
 def polar_density(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,13 +14,16 @@ from qsrlang.errors import ImpossibleConditionError
 from qsrlang.geometry.pose import Pose2
 from qsrlang.language.syntax import Formula, atoms_of
 from qsrlang.mixtures.chains import placed_by
+from qsrlang.mixtures.draws import draw, width_of
 from qsrlang.mixtures.events import Outlook
 from qsrlang.mixtures.plans import plan_world
-from qsrlang.mixtures.resolve import draw
+from qsrlang.mixtures.solving import log_mean
+from qsrlang.mixtures.uniforms import REPLICATES, lattices
 from qsrlang.mixtures.worlds import World, enumerate_worlds
 from qsrlang.relations.graph import RelationGraph
 
 MIN_DRAWS = 100
+MAX_DRAWN = 1000
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,16 +83,18 @@ def draw_scenes(
 ) -> tuple[Scenes, ...]:
     """Return draws of every world of all objects named, weighted by shares, by evidence and by the conditions.
 
-    Worlds share the draws by their prior weight, each with MIN_DRAWS or more. Evidence, the agreement of what is
-    fused, weighs worlds only against those that place the same objects. Raises ImpossibleConditionError.
+    Worlds share the draws by their prior weight, each with MIN_DRAWS or more; there are MAX_DRAWN worlds at most.
+    Evidence, the agreement of what is fused, weighs worlds only against those that place the same objects. Raises
+    ImpossibleConditionError.
     """
     objects = tuple(dict.fromkeys([*names, *objects_of(*(one.formula for one in conditions))]))
-    worlds = [one for one in enumerate_worlds(graph, *objects) if one.weight > 0.0]
-    drawn = list(_drawn(graph, worlds, objects, drawing))
-    scale = _scales(drawn, objects)
+    worlds = [one for one in enumerate_worlds(graph, *objects, limit=MAX_DRAWN) if one.weight > 0.0]
+    outlooks = [_outlook(graph, world, objects, drawing) for world in worlds]
+    scales = _scales(outlooks, objects)
     found = []
-    for outlook, logs in drawn:
-        weights = outlook.world.weight * np.exp(logs - scale[_placed(outlook, objects)]) / len(logs)
+    for outlook in outlooks:
+        logs = outlook.drawn.logs
+        weights = outlook.world.weight * np.exp(logs - scales[_placed(outlook, objects)]) / len(logs)
         for condition in conditions:
             weights = weights * condition.factor(outlook.holds(condition.formula))
         found.append(Scenes(outlook, weights))
@@ -100,12 +105,11 @@ def draw_scenes(
 
 
 def ratio_error(scenes: Iterable[Scenes], held: Iterable[BoolArray], ratio: float) -> float:
-    """Return the standard error of sum w_i held_i / sum w_i over weighted draws of several worlds (delta method)."""
-    variance = 0.0
+    """Return the standard error of sum w_i held_i / sum w_i, from how it differs between REPLICATES of all draws."""
+    residuals = np.zeros(REPLICATES)
     for one, is_held in zip(scenes, held, strict=True):
-        residuals = one.weights * (is_held - ratio)
-        variance += len(residuals) * float(residuals.var())
-    return math.sqrt(variance)
+        residuals += (one.weights * (is_held - ratio)).reshape(REPLICATES, -1).sum(axis=1)
+    return float(math.sqrt(REPLICATES) * residuals.std(ddof=1))
 
 
 def effective_draws(scenes: Iterable[Scenes]) -> float:
@@ -124,36 +128,23 @@ def _depends_on(graph: RelationGraph, names: Iterable[str]) -> set[str]:
     return found
 
 
-def _drawn(
-    graph: RelationGraph, worlds: Sequence[World], objects: tuple[str, ...], drawing: Drawing
-) -> Iterator[tuple[Outlook, FloatArray]]:
-    for world in worlds:
-        plan = plan_world(graph, world, *objects)
-        count = max(MIN_DRAWS, round(drawing.samples * world.weight))
-        drawn = draw(graph, plan, drawing.viewer, count, drawing.rng)
-        yield Outlook(graph, world, plan, drawn, drawing.viewer), drawn.logs
+def _outlook(graph: RelationGraph, world: World, objects: tuple[str, ...], drawing: Drawing) -> Outlook:
+    plan = plan_world(graph, world, *objects)
+    count = max(MIN_DRAWS, round(drawing.samples * world.weight))
+    drawn = draw(graph, plan, drawing.viewer, lattices(count, width_of(plan), drawing.rng))
+    return Outlook(graph, world, plan, drawn, drawing.viewer)
 
 
 def _placed(outlook: Outlook, objects: Iterable[str]) -> frozenset[str]:
     return frozenset(name for name in objects if outlook.world.named(name) in outlook.plan.seats)
 
 
-def _scales(
-    drawn: Iterable[tuple[Outlook, FloatArray]], objects: tuple[str, ...]
-) -> dict[frozenset[str], float]:
+def _scales(outlooks: Iterable[Outlook], objects: tuple[str, ...]) -> dict[frozenset[str], float]:
     """Return, for each set of placed objects, the log of the mean evidence of its worlds, weighted by shares."""
     evidence: dict[frozenset[str], list[tuple[float, float]]] = defaultdict(list)
-    for outlook, logs in drawn:
+    for outlook in outlooks:
+        logs = outlook.drawn.logs
         top = float(logs.max())
         mean = top + math.log(float(np.exp(logs - top).mean())) if math.isfinite(top) else -math.inf
         evidence[_placed(outlook, objects)].append((outlook.world.weight, mean))
-    return {placed: _log_mean(found) for placed, found in evidence.items()}
-
-
-def _log_mean(weighted: Sequence[tuple[float, float]]) -> float:
-    """Return log(sum w e^l / sum w); 0 where no evidence is possible at all."""
-    top = max(log for _, log in weighted)
-    if not math.isfinite(top):
-        return 0.0
-    total = sum(weight for weight, _ in weighted)
-    return top + math.log(sum(weight * math.exp(log - top) for weight, log in weighted) / total)
+    return {placed: log_mean(found) for placed, found in evidence.items()}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -17,8 +17,28 @@ from qsrlang.mixtures.stance import Boxes, Stance
 MIN_OVERLAP = 1e-12
 MIN_ROOM = 1e-3
 MIN_WAY = 1e-3
-_REDRAWS = 16
 _CHUNK = 4096
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Rays:
+    """Directions (P, N) [rad], each the middle of a `cell`, with their shares of the mass (P, N), and the way along
+    each from `low` to `high` (P, N) [m].
+    """
+
+    directions: FloatArray
+    weights: FloatArray
+    low: FloatArray
+    high: FloatArray
+    cell: float
+
+    def part(self, number: int, count: int) -> Rays:
+        """Return the part of them from number / count to (number + 1) / count of the mass, as a whole."""
+        if count == 1:
+            return self
+        above = np.cumsum(self.weights, axis=1)
+        inside = np.minimum(above, (number + 1) / count) - np.maximum(above - self.weights, number / count)
+        return replace(self, weights=count * np.maximum(inside, 0.0))
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,27 +59,29 @@ class PolarDensity:
     boxes: Boxes
     support: ConvexPolygon | None
     reach: float
-    what: str
+    what: str = field(compare=False)
 
-    def moments(self, stance: Stance) -> tuple[FloatArray, FloatArray]:
-        """Return the exact mean (P, 2) and covariance (P, 2, 2) of x at each stand.
+    def moments(self, stance: Stance, part: tuple[int, int] = (0, 1)) -> tuple[FloatArray, FloatArray]:
+        """Return the exact mean (P, 2) and covariance (P, 2, 2) of x at each stand, or of its j-th part of k.
 
         Quadrature over the angle; closed form in r: E r = (lo + hi) / 2, E r^2 = (lo^2 + lo hi + hi^2) / 3.
         """
-        directions, weights, low, high = self._rays(stance, strict=True)
-        x, y = np.cos(directions), np.sin(directions)
-        first = weights * 0.5 * (low + high)
-        second = weights * (low**2 + low * high + high**2) / 3.0
+        rays = self.rays(stance, strict=True).part(*part)
+        x, y = np.cos(rays.directions), np.sin(rays.directions)
+        first = rays.weights * 0.5 * (rays.low + rays.high)
+        second = rays.weights * (rays.low**2 + rays.low * rays.high + rays.high**2) / 3.0
         mean = np.stack([(first * x).sum(axis=1), (first * y).sum(axis=1)], axis=-1)
-        xx, xy, yy = ((second * product).sum(axis=1) for product in (x * x, x * y, y * y))
-        square = np.stack([np.stack([xx, xy], axis=-1), np.stack([xy, yy], axis=-1)], axis=-2)
+        along, across = second * x, second * y
+        square = np.empty((len(mean), 2, 2))
+        square[:, 0, 0], square[:, 1, 1] = (along * x).sum(axis=1), (across * y).sum(axis=1)
+        square[:, 0, 1] = square[:, 1, 0] = (along * y).sum(axis=1)
         return stance.positions + mean, square - mean[:, :, None] * mean[:, None, :]
 
-    def sample(self, stance: Stance, rng: np.random.Generator) -> FloatArray:
-        """Return one draw of x from each stand: (P, 2)."""
+    def sample(self, stance: Stance, uniforms: FloatArray) -> FloatArray:
+        """Return one draw of x from each stand, made of three uniform numbers (P, 3): (P, 2)."""
         if len(self.angles) == 1:
-            return self._draw_by_rejection(stance, rng)
-        return self._draw_by_inversion(stance, rng)
+            return self._draw_directly(stance, uniforms)
+        return self._draw_by_inversion(stance, uniforms)
 
     def pdf(self, points: FloatArray, stance: Stance) -> FloatArray:
         """Return p(x | relatum) of points (P, 2), one per stand: (P,) [1/m^2]."""
@@ -135,8 +157,8 @@ class PolarDensity:
                 product = product * factor.pdf(self.hands[j] * (theta - stance.axes[:, [j]]))
         return product
 
-    def _rays(self, stance: Stance, strict: bool) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Return directions, normalised weights, least and greatest distances, each (P, N)."""
+    def rays(self, stance: Stance, strict: bool) -> Rays:
+        """Return the directions of the quadrature, their shares of the mass, and the way along each."""
         directions, weights = self._nodes(stance)
         weights = weights / self._overlap(weights)
         low, high = self.bounds(stance, directions)
@@ -146,7 +168,11 @@ class PolarDensity:
             raise NoRoomError(self.what, "the support")
         with np.errstate(invalid="ignore", divide="ignore"):
             weights = np.where(room < MIN_ROOM, weights, roomy / room)
-        return directions, weights, low, np.maximum(low, high)
+        return Rays(directions, weights, low, np.maximum(low, high), self._narrowest.cell)
+
+    @property
+    def _narrowest(self) -> Bump:
+        return min(self.angles, key=lambda angle: angle.spread)
 
     def _overlap(self, weights: FloatArray) -> FloatArray:
         mass = weights.sum(axis=1, keepdims=True)
@@ -164,31 +190,31 @@ class PolarDensity:
             parts.append(np.where(high > low, weights, 0.0).sum(axis=1))
         return np.asarray(np.concatenate(parts)[which])
 
-    def _draw_by_rejection(self, stance: Stance, rng: np.random.Generator) -> FloatArray:
-        """Draw the angle directly, and again where the direction has no room; invert for the few that remain."""
-        points = np.array(stance.positions)
-        waiting = np.arange(len(points))
-        for _ in range(_REDRAWS):
-            part = stance.at(waiting)
-            theta = part.axes + self.hands[0] * self.angles[0].sample(len(waiting), rng)[:, None]
-            low, high = (bound[:, 0] for bound in self.bounds(part, theta))
-            free = high > low
-            r = rng.uniform(low[free], high[free])
-            points[waiting[free]] = part.positions[free] + r[:, None] * unit(theta[free, 0])
-            waiting = waiting[~free]
-            if len(waiting) == 0:
-                return points
-        points[waiting] = self._draw_by_inversion(stance.at(waiting), rng)
-        return points
+    def _draw_directly(self, stance: Stance, uniforms: FloatArray) -> FloatArray:
+        """Invert the angle's own distribution; where that direction has no room, invert that of those that have."""
+        theta = stance.axes[:, 0] + self.hands[0] * self.angles[0].quantile(uniforms[:, 0])
+        low, high = (bound[:, 0] for bound in self.bounds(stance, theta[:, None]))
+        free = high > low
+        points = stance.positions + (low + uniforms[:, 1] * (high - low))[:, None] * unit(theta)
+        if not free.all():
+            again = uniforms[~free][:, [2, 1]]
+            points[~free] = self._draw_by_inversion(stance.at(~free), again)
+        return np.asarray(points)
 
-    def _draw_by_inversion(self, stance: Stance, rng: np.random.Generator) -> FloatArray:
+    def _draw_by_inversion(self, stance: Stance, uniforms: FloatArray) -> FloatArray:
         chunks = [slice(at, at + _CHUNK) for at in range(0, max(len(stance.positions), 1), _CHUNK)]
-        return np.concatenate([self._draw_nodes(stance.at(chunk), rng) for chunk in chunks])
+        return np.concatenate([self._draw_rays(stance.at(chunk), uniforms[chunk]) for chunk in chunks])
 
-    def _draw_nodes(self, stance: Stance, rng: np.random.Generator) -> FloatArray:
-        directions, weights, low, high = self._rays(stance, strict=False)
-        cumulative = np.cumsum(weights, axis=1)
-        chosen = (cumulative < rng.random(len(weights))[:, None]).sum(axis=1).clip(max=weights.shape[1] - 1)
-        rows = np.arange(len(weights))
-        r = rng.uniform(low[rows, chosen], high[rows, chosen])
-        return np.asarray(stance.positions + r[:, None] * unit(directions[rows, chosen]))
+    def _draw_rays(self, stance: Stance, uniforms: FloatArray) -> FloatArray:
+        rays = self.rays(stance, strict=False)
+        cumulative = np.cumsum(rays.weights, axis=1)
+        wanted = uniforms[:, [0]] * cumulative[:, -1:]
+        chosen = (cumulative < wanted).sum(axis=1).clip(max=cumulative.shape[1] - 1)
+        rows = np.arange(len(cumulative))
+        inside = (wanted[:, 0] - cumulative[rows, chosen]) / rays.weights[rows, chosen] + 0.5
+        theta = rays.directions[rows, chosen] + inside.clip(-0.5, 0.5) * rays.cell
+        low, high = (bound[:, 0] for bound in self.bounds(stance, theta[:, None]))
+        bent = high <= low
+        theta[bent] = rays.directions[rows, chosen][bent]
+        low[bent], high[bent] = rays.low[rows, chosen][bent], rays.high[rows, chosen][bent]
+        return np.asarray(stance.positions + (low + uniforms[:, 1] * (high - low))[:, None] * unit(theta))

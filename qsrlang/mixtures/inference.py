@@ -8,50 +8,61 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from qsrlang.arrays import FloatArray
 from qsrlang.errors import UnreachedTargetError
 from qsrlang.geometry.pose import Pose2
 from qsrlang.mixtures.answers import Component, Where
 from qsrlang.mixtures.chains import broken_chains, chain_starts
 from qsrlang.mixtures.gaussian import GaussianMixture
 from qsrlang.mixtures.plans import Plan, plan_world
-from qsrlang.mixtures.resolve import Placement, place_by_sampling, place_exactly
-from qsrlang.mixtures.worlds import World, enumerate_worlds
+from qsrlang.mixtures.reduction import MAX_COMPONENTS, reduced
+from qsrlang.mixtures.resolve import Placement, definite, place_by_sampling
+from qsrlang.mixtures.solving import posterior_weights, solve_worlds
+from qsrlang.mixtures.worlds import MAX_WORLDS, enumerate_worlds
 from qsrlang.relations.graph import Landmark, RelationGraph
+
+MIN_WEIGHT = 1e-12
 
 
 @dataclass(frozen=True, slots=True)
-class Engine:
-    """How worlds are placed: by exact moments, or, where there is a generator, by draws as in the paper."""
+class Bounds:
+    """How many worlds are weighed, and how many components an answer has, at most."""
 
-    samples: int = 0
-    rng: np.random.Generator | None = None
-
-    def place(self, graph: RelationGraph, plan: Plan, target: str, viewer: Pose2 | None) -> Placement:
-        """Return where a plan puts the target."""
-        if self.rng is None:
-            return place_exactly(graph, plan, target, viewer)
-        return place_by_sampling(graph, plan, target, viewer, self.samples, self.rng)
+    worlds: int = MAX_WORLDS
+    components: int = MAX_COMPONENTS
 
 
-def where_on_map(graph: RelationGraph, target: str, viewer: Pose2 | None, engine: Engine) -> Where:
+def where_exactly(graph: RelationGraph, target: str, viewer: Pose2 | None, bounds: Bounds) -> Where:
     """Return where a target is in the map frame; raises UnreachedTargetError, NoRoomError and MissingFacingError."""
-    plans = ((world, plan_world(graph, world, target)) for world in enumerate_worlds(graph, target))
-    placed = [
-        (world, engine.place(graph, plan, world.named(target), viewer))
+    solution = solve_worlds(graph, (target,), viewer, bounds.worlds)
+    placed = [one for one in solution.worlds if one.places(target)]
+    components = []
+    for one in placed:
+        mean, covariance = one.posterior.marginal(one.plan.seats[one.world.named(target)])
+        components.append(Component(one.weight, mean, definite(covariance), statements_of(one.plan)))
+    return _answer(graph, target, components, solution.dropped, bounds.components)
+
+
+def where_by_sampling(
+    graph: RelationGraph, target: str, viewer: Pose2 | None, samples: int, rng: np.random.Generator
+) -> Where:
+    """Return the same as the paper finds it, from `samples` draws of every world."""
+    worlds = enumerate_worlds(graph, target)
+    plans = [(world, plan_world(graph, world, target)) for world in worlds if world.weight > 0.0]
+    found: list[Placement | None] = [
+        place_by_sampling(graph, plan, world.named(target), viewer, samples, rng)
+        if world.named(target) in plan.seats
+        else None
         for world, plan in plans
-        if world.named(target) in plan.seats and world.weight > 0.0
     ]
-    if not placed:
-        raise UnreachedTargetError(target, broken_chains(graph, target))
-    claimed = sum(world.weight for world, _ in placed)
-    weights = _posterior(placed) * min(claimed, 1.0)
+    logs = [0.0 if one is None else one.log_evidence for one in found]
+    placed = [frozenset(() if one is None else (target,)) for one in found]
+    weights = posterior_weights([world.weight for world, _ in plans], logs, placed)
     components = [
-        Component(float(weight), placement.mean, placement.covariance, _statements(placement))
-        for weight, (_, placement) in zip(weights, placed, strict=True)
+        Component(float(weight), one.mean, one.covariance, statements_of(plan))
+        for weight, one, (_, plan) in zip(weights, found, plans, strict=True)
+        if one is not None
     ]
-    components.sort(key=lambda component: (-component.weight, *component.mean))
-    return Where(target, "map", mixture_of(components), max(0.0, 1.0 - claimed), tuple(components))
+    return _answer(graph, target, components, worlds.dropped, MAX_COMPONENTS)
 
 
 def alone_with(graph: RelationGraph, relatum: str) -> RelationGraph:
@@ -100,12 +111,19 @@ def mixture_of(components: Sequence[Component]) -> GaussianMixture:
     return GaussianMixture(shares / shares.sum(), means, covariances)
 
 
-def _posterior(placed: Sequence[tuple[World, Placement]]) -> FloatArray:
-    """Return the worlds' weights, prior times evidence, normalised."""
-    logs = np.array([math.log(world.weight) + placement.log_evidence for world, placement in placed])
-    weights = np.exp(logs - logs.max())
-    return np.asarray(weights / weights.sum())
+def statements_of(plan: Plan) -> tuple[str, ...]:
+    """Return the statements behind a plan, each once."""
+    return tuple(dict.fromkeys(str(constraint.statement) for constraint in plan.constraints))
 
 
-def _statements(placement: Placement) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(str(constraint.statement) for constraint in placement.constraints))
+def _answer(
+    graph: RelationGraph, target: str, components: Sequence[Component], dropped: float, limit: int
+) -> Where:
+    """Return components as an answer; those of less than MIN_WEIGHT are left out, and the rest reduced to `limit`."""
+    claimed = sum(component.weight for component in components)
+    if not claimed > 0.0:
+        raise UnreachedTargetError(target, broken_chains(graph, target))
+    kept = [one for one in components if one.weight >= MIN_WEIGHT * claimed]
+    chosen = reduced(kept, limit)
+    elsewhere = 1.0 - claimed if claimed < 1.0 - MIN_WEIGHT else 0.0
+    return Where(target, "map", mixture_of(chosen), elsewhere, chosen, dropped=dropped)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections import Counter, defaultdict, deque
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 
-from qsrlang.mixtures.supports import Seat, Support, in_region, support_of
-from qsrlang.mixtures.worlds import World, needed_for
+from qsrlang.mixtures.chains import needed_for
+from qsrlang.mixtures.layout import Layout
+from qsrlang.mixtures.supports import Seat, Support, in_region, stated_regions, support_of
+from qsrlang.mixtures.worlds import World
 from qsrlang.relations.graph import Constraint, Landmark, RelationGraph
 
 
@@ -18,79 +21,193 @@ class Step:
     """
 
     constraint: Constraint
+    referent: Seat
     relatum: Seat
     second: Seat | None
     support: Support | None
     places: bool
 
+    def saying(self, constraint: Constraint) -> Step:
+        """Return the same step with another constraint on the same pair."""
+        return Step(constraint, self.referent, self.relatum, self.second, self.support, self.places)
 
-@dataclass(frozen=True, slots=True)
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Plan:
     """The landmarks of a world, the steps that place its objects, and where each object sits in the state.
 
-    `constraints` are those that the steps come from, and the regions that bound their distances.
+    `constraints` are those that the steps come from, and the regions that bound their distances, in their order. Plans
+    that differ in nothing but what their constraints say have one `layout`.
     """
 
     landmarks: tuple[Landmark, ...]
     steps: tuple[Step, ...]
     seats: Mapping[str, Seat]
     constraints: tuple[Constraint, ...]
+    layout: Layout
+
+    @property
+    def fused(self) -> int:
+        """How many steps add to what is placed already."""
+        return sum(not step.places for step in self.steps)
+
+
+@dataclass(frozen=True, slots=True)
+class _Pattern:
+    """A plan, and which of its world's constraints each of its constraints and steps is."""
+
+    plan: Plan
+    order: tuple[int, ...]
+    stepping: tuple[int, ...]
+
+    def filled(self, constraints: tuple[Constraint, ...]) -> Plan:
+        """Return the plan of another world, whose constraints speak of the same pairs."""
+        plan = self.plan
+        steps = tuple(
+            step.saying(constraints[at]) for step, at in zip(plan.steps, self.stepping, strict=True)
+        )
+        used = tuple(constraints[at] for at in self.order)
+        return Plan(plan.landmarks, steps, plan.seats, used, plan.layout)
 
 
 def plan_world(graph: RelationGraph, world: World, *targets: str) -> Plan:
     """Return how a world places targets; those that no chain of it ties to a landmark have no seat."""
+    (plan,) = plan_worlds(graph, (world,), *targets)
+    return plan
+
+
+def plan_worlds(graph: RelationGraph, worlds: Iterable[World], *targets: str) -> tuple[Plan, ...]:
+    """Return how each world places targets; worlds whose constraints speak of the same pairs are planned once."""
+    patterns: dict[object, _Pattern] = {}
+    plans = []
+    for world in worlds:
+        pairs = tuple((one.referent, one.relatum, one.towards, in_region(one)) for one in world.constraints)
+        key = (pairs, world.bindings, world.aliases, world.absent, world.seen)
+        if key not in patterns:
+            patterns[key] = _pattern(graph, world, targets)
+        plans.append(patterns[key].filled(world.constraints))
+    return tuple(plans)
+
+
+def _pattern(graph: RelationGraph, world: World, targets: tuple[str, ...]) -> _Pattern:
+    helpful = _helpful(world, targets)
     seats = {name: Seat(landmark.name, landmark) for name, landmark in world.bindings}
-    waiting = [constraint for constraint in _helpful(world, targets) if constraint.referent not in seats]
-    helpful = tuple(waiting)
+    regions = stated_regions(helpful)
     used: list[Constraint] = []
     steps: list[Step] = []
-    while ready := [c for c in waiting if all(name in seats for name in c.relata)]:
-        constraint = min(ready, key=lambda c: (c.referent not in seats, _delay(c, waiting)))
-        waiting.remove(constraint)
+    bounds: dict[str, list[Seat]] = defaultdict(list)
+    for constraint in _in_order(helpful, seats):
         used.append(constraint)
-        if not _bounds_already(constraint, seats, steps):
-            steps.append(_step(graph, constraint, helpful, seats))
-        seats.setdefault(constraint.referent, Seat(constraint.referent, seats[constraint.relatum].root))
+        places = constraint.referent not in seats
+        root = seats[constraint.relatum].root
+        referent = seats.setdefault(constraint.referent, Seat(constraint.referent, root))
+        if in_region(constraint) and seats[constraint.relatum] in bounds[constraint.referent]:
+            continue
+        step = _step(graph, constraint, referent, regions, seats, places)
+        bounds[constraint.referent] += [step.support.seat] if step.support else []
+        steps.append(step)
     known = [landmark for _, landmark in world.bindings]
     known += [step.support.seat.root for step in steps if step.support]
     landmarks = tuple({one.name: one for one in known}.values())
-    return Plan(landmarks, tuple(steps), seats, tuple(used))
+    layout = Layout.of(landmarks, [step.referent.block for step in steps if step.places])
+    plan = Plan(landmarks, tuple(steps), seats, tuple(used), layout)
+    number = {id(constraint): at for at, constraint in enumerate(world.constraints)}
+    order = tuple(number[id(constraint)] for constraint in used)
+    return _Pattern(plan, order, tuple(number[id(step.constraint)] for step in steps))
 
 
-def _delay(constraint: Constraint, waiting: list[Constraint]) -> int:
-    """Return how long a constraint may wait: regions, which only bound what others tell, for as long as those may."""
-    if not in_region(constraint):
-        return 0
-    others = (other for other in waiting if other.referent == constraint.referent and not in_region(other))
-    return 2 if any(others) else 1
-
-
-def _step(
-    graph: RelationGraph, constraint: Constraint, others: tuple[Constraint, ...], seats: Mapping[str, Seat]
-) -> Step:
-    second = None if constraint.towards is None else seats[constraint.towards]
-    support = support_of(graph, constraint, others, seats)
-    return Step(constraint, seats[constraint.relatum], second, support, constraint.referent not in seats)
-
-
-def _bounds_already(constraint: Constraint, seats: dict[str, Seat], steps: list[Step]) -> bool:
-    """Return whether a region says nothing more, since its relatum bounds where its referent was placed."""
-    return in_region(constraint) and any(
-        step.constraint.referent == constraint.referent
-        and step.support is not None
-        and step.support.seat == seats[constraint.relatum]
-        for step in steps
-    )
+def seats_read(*steps: Step) -> tuple[Seat, ...]:
+    """Return the things that steps depend on, relata first."""
+    read = [step.relatum for step in steps]
+    read += [step.second for step in steps if step.second]
+    read += [step.support.seat for step in steps if step.support]
+    return tuple(dict.fromkeys(read))
 
 
 def step_of(graph: RelationGraph, constraint: Constraint, seats: Mapping[str, Seat]) -> Step:
     """Return a constraint between objects that sit already."""
-    return _step(graph, constraint, (), seats)
+    return _step(graph, constraint, seats[constraint.referent], {}, seats, places=False)
 
 
-def _helpful(world: World, targets: tuple[str, ...]) -> list[Constraint]:
-    """Return the constraints that help to place targets, in an order that is always the same."""
-    needed = needed_for([world.named(target) for target in targets], world.constraints)
+@dataclass(slots=True)
+class _Order:
+    """Constraints by what they still wait for: regions, which only bound what others tell, come after those."""
+
+    missing: dict[int, int] = field(default_factory=dict)
+    ready: deque[Constraint] = field(default_factory=deque)
+    regions: deque[Constraint] = field(default_factory=deque)
+    waiting: dict[str, list[Constraint]] = field(default_factory=lambda: defaultdict(list))
+    open: Counter[str] = field(default_factory=Counter)
+
+    def add(self, constraint: Constraint, seats: Mapping[str, Seat]) -> None:
+        """Take in a constraint, ready or not."""
+        missing = [name for name in dict.fromkeys(constraint.relata) if name not in seats]
+        self.missing[id(constraint)] = len(missing)
+        for name in missing:
+            self.waiting[name].append(constraint)
+        if not in_region(constraint):
+            self.open[constraint.referent] += 1
+        if not missing:
+            self._offer(constraint)
+
+    def place(self, name: str) -> None:
+        """Make ready what waits for a name alone."""
+        for constraint in self.waiting.pop(name, ()):
+            self.missing[id(constraint)] -= 1
+            if self.missing[id(constraint)] == 0:
+                self._offer(constraint)
+
+    def take(self) -> Constraint | None:
+        """Return the next constraint; of regions, first one of an object that nothing else is waiting to place."""
+        if self.ready:
+            constraint = self.ready.popleft()
+            self.open[constraint.referent] -= 1
+            return constraint
+        chosen = next((one for one in self.regions if not self.open[one.referent]), None)
+        chosen = chosen or next(iter(self.regions), None)
+        if chosen is not None:
+            self.regions.remove(chosen)
+        return chosen
+
+    def _offer(self, constraint: Constraint) -> None:
+        (self.regions if in_region(constraint) else self.ready).append(constraint)
+
+
+def _in_order(constraints: tuple[Constraint, ...], seats: Mapping[str, Seat]) -> Iterator[Constraint]:
+    """Yield the constraints whose relata are placed by then, each as soon as they are."""
+    order = _Order()
+    placed = set(seats)
+    for one in constraints:
+        order.add(one, seats)
+    while (constraint := order.take()) is not None:
+        yield constraint
+        if constraint.referent not in placed:
+            placed.add(constraint.referent)
+            order.place(constraint.referent)
+
+
+def _step(
+    graph: RelationGraph,
+    constraint: Constraint,
+    referent: Seat,
+    regions: Mapping[str, tuple[str, ...]],
+    seats: Mapping[str, Seat],
+    places: bool,
+) -> Step:
+    second = None if constraint.towards is None else seats[constraint.towards]
+    support = support_of(graph, constraint, regions, seats)
+    return Step(constraint, referent, seats[constraint.relatum], second, support, places)
+
+
+def _helpful(world: World, targets: tuple[str, ...]) -> tuple[Constraint, ...]:
+    """Return the constraints that help to place targets, or tell of them, in an order that is always the same."""
+    needed = needed_for([*(world.named(target) for target in targets), *world.seen], world.constraints)
     absent = {world.named(name) for name in world.absent}
-    helpful = [one for one in world.constraints if one.referent in needed and one.referent not in absent]
-    return sorted(helpful, key=lambda c: (c.referent, *c.relata))
+    known = {name for name, _ in world.bindings} - set(world.seen)
+    useful = needed - absent - known
+    return tuple(sorted((one for one in world.constraints if one.referent in useful), key=_rank))
+
+
+def _rank(constraint: Constraint) -> tuple[object, ...]:
+    names = tuple((atom.relation.name, atom.frame.value) for atom in constraint.atoms)
+    return (constraint.referent, constraint.relata, in_region(constraint), names, constraint.part)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
+from functools import lru_cache
 from pathlib import Path
 from typing import TypeAlias, overload
 
@@ -18,9 +19,11 @@ from qsrlang.language.source import Source
 from qsrlang.language.syntax import Formula, atoms_of
 from qsrlang.mixtures.answers import Where
 from qsrlang.mixtures.conditioning import Drawing, conditions_on, objects_of
-from qsrlang.mixtures.inference import Engine, in_frame, rooted, where_on_map
+from qsrlang.mixtures.inference import Bounds, in_frame, rooted, where_by_sampling, where_exactly
 from qsrlang.mixtures.names import check_atom, check_object, check_question
 from qsrlang.mixtures.probability import Probability, probability, where_assuming
+from qsrlang.mixtures.reduction import MAX_COMPONENTS
+from qsrlang.mixtures.worlds import MAX_WORLDS
 from qsrlang.relations.build import ANYWHERE, Built, build_graph
 from qsrlang.relations.contexts import Circumstances
 from qsrlang.relations.graph import Landmark, RelationGraph
@@ -90,6 +93,8 @@ class KnowledgeBase:
         engine: str = "exact",
         samples: int = DEFAULT_SAMPLES,
         rng: np.random.Generator | None = None,
+        max_components: int = MAX_COMPONENTS,
+        max_worlds: int = MAX_WORLDS,
     ) -> Where:
         """Return where `target` is: a Gaussian mixture in the map frame, with the statements behind each component.
 
@@ -98,16 +103,20 @@ class KnowledgeBase:
         relative to the class the chain starts from (x away from the viewer, y to its left). `engine="sampling"`
         fits Gaussians to `samples` draws of `rng`, as the paper does. What is `given`, such as
         `left-of(Cup, Keyboard)`, and what the knowledge requires of what the target depends on, is met by weighing
-        `samples` draws (of `rng`, or of a generator with seed 0). Raises UnreachedTargetError, NoRoomError,
+        `samples` draws (of `rng`, or of a generator with seed 0). The `max_worlds` likeliest combinations of
+        alternatives are weighed, and reduced to `max_components`. Raises UnreachedTargetError, NoRoomError,
         MissingFacingError and ImpossibleConditionError.
         """
         for name in filter(None, (target, wrt)):
             check_object(name, self.graph)
-        placing = _engine(engine, samples, rng)
+        for what, bound in (("components", max_components), ("worlds", max_worlds)):
+            if bound < 1:
+                raise ValueRangeError(f"the greatest number of {what}", bound, "at least 1")
+        solve = _engine(engine, samples, rng, Bounds(max_worlds, max_components))
         graph = self.with_landmarks(*_instances(landmarks or {}, self.graph)).graph
         conditions = conditions_on(graph, (target,), self._formula(given))
         if not conditions:
-            return in_frame(graph, target, wrt, lambda known: where_on_map(known, target, viewer, placing))
+            return in_frame(graph, target, wrt, lambda known: solve(known, target, viewer))
         drawing = Drawing(samples, rng or np.random.default_rng(0), viewer)
         return in_frame(graph, target, wrt, lambda known: where_assuming(known, target, conditions, drawing))
 
@@ -170,7 +179,7 @@ class KnowledgeBase:
         """Return a formula as a node, its names checked."""
         if formula is None:
             return None
-        node = parse_formula(formula) if isinstance(formula, str) else formula
+        node = _parsed(formula) if isinstance(formula, str) else formula
         for atom in atoms_of(node):
             check_atom(atom, self.graph)
         return node
@@ -201,16 +210,23 @@ def _refined(circumstances: Circumstances, asked: Circumstances) -> Circumstance
     return replace(circumstances, **said)
 
 
-def _engine(name: str, samples: int, rng: np.random.Generator | None) -> Engine:
+@lru_cache(maxsize=256)
+def _parsed(formula: str) -> Formula:
+    return parse_formula(formula)
+
+
+def _engine(
+    name: str, samples: int, rng: np.random.Generator | None, bounds: Bounds
+) -> Callable[[RelationGraph, str, Pose2 | None], Where]:
     if name not in ENGINES:
         raise UnknownNameError("engine", name, ENGINES)
     if name == "exact":
-        return Engine()
+        return lambda graph, target, viewer: where_exactly(graph, target, viewer, bounds)
     if rng is None or samples < 2:
         raise ValueRangeError(
             "the sampling engine's rng and samples", (rng, samples), "a generator and at least 2"
         )
-    return Engine(samples, rng)
+    return lambda graph, target, viewer: where_by_sampling(graph, target, viewer, samples, rng)
 
 
 def _instances(poses: Poses, graph: RelationGraph) -> Iterator[Landmark]:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from qsrlang.arrays import FloatArray
-from qsrlang.geometry.angles import rotation, unit
-from qsrlang.mixtures.conditional import Conditional
+from qsrlang.geometry.angles import TURN, rotation, unit
+from qsrlang.mixtures.conditional import Conditional, Turning
 from qsrlang.mixtures.standpoint import Standpoint
 from qsrlang.relations.graph import Constraint, RelationGraph
 
@@ -23,15 +23,21 @@ class BoxConditional:
     width: float
     standpoint: Standpoint
 
+    def turning(self, heading: float, is_certain: bool) -> Turning | None:
+        """Return the moments in the relatum's frame."""
+        if self.standpoint.relatum.heading is None:
+            return None
+        return Turning(np.zeros(2), np.diag(np.square(self._sides) / 12.0))
+
     def moments(self, states: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return mean (P, 2) and covariance R diag(length^2, width^2) / 12 R^T (P, 2, 2) of x."""
         turn = rotation(self.standpoint.box_yaws(states))
         spread = turn * (np.square(self._sides) / 12.0)
         return self.standpoint.relatum.positions(states), spread @ turn.transpose(0, 2, 1)
 
-    def sample(self, states: FloatArray, rng: np.random.Generator) -> FloatArray:
-        """Return one draw (P, 2) from each state."""
-        offsets = (rng.random((len(states), 2)) - 0.5) * self._sides
+    def sample(self, states: FloatArray, uniforms: FloatArray) -> FloatArray:
+        """Return one draw (P, 2) from each state, made of uniform numbers (P, 3)."""
+        offsets = (uniforms[:, :2] - 0.5) * self._sides
         turn = rotation(self.standpoint.box_yaws(states))
         return np.asarray(self.standpoint.relatum.positions(states) + np.einsum("pij,pj->pi", turn, offsets))
 
@@ -54,15 +60,19 @@ class DiscConditional:
     radius: float
     standpoint: Standpoint
 
+    def turning(self, heading: float, is_certain: bool) -> Turning | None:
+        """Return the moments in the relatum's frame; a disc is the same in any."""
+        return Turning(np.zeros(2), 0.25 * self.radius**2 * np.eye(2))
+
     def moments(self, states: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return mean (P, 2) and covariance radius^2 / 4 I (P, 2, 2) of x."""
         positions = self.standpoint.relatum.positions(states)
         return positions, np.tile(0.25 * self.radius**2 * np.eye(2), (len(states), 1, 1))
 
-    def sample(self, states: FloatArray, rng: np.random.Generator) -> FloatArray:
-        """Return one draw (P, 2) from each state."""
-        r = self.radius * np.sqrt(rng.random(len(states)))
-        theta = rng.uniform(-np.pi, np.pi, len(states))
+    def sample(self, states: FloatArray, uniforms: FloatArray) -> FloatArray:
+        """Return one draw (P, 2) from each state, made of uniform numbers (P, 3)."""
+        r = self.radius * np.sqrt(uniforms[:, 0])
+        theta = TURN * uniforms[:, 1]
         return np.asarray(self.standpoint.relatum.positions(states) + r[:, None] * unit(theta))
 
     def pdf(self, points: FloatArray, states: FloatArray) -> FloatArray:

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from qsrlang.arrays import BoolArray, FloatArray, IntArray
-from qsrlang.geometry.angles import unit
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,6 +20,11 @@ class Boxes:
     relatum: tuple[float, float]
     relatum_supports: bool = False
     second: tuple[float, float] = (0.0, 0.0)
+
+    @property
+    def are_points(self) -> bool:
+        """Whether none of them has a size, so that it does not matter how they are turned."""
+        return not any((*self.referent, *self.relatum, *self.second))
 
     def contact(self, yaws: FloatArray, directions: FloatArray) -> FloatArray:
         """Return where the referent touches relata turned by `yaws` (P,), along directions (P, N): (P, N) [m]."""
@@ -36,11 +40,9 @@ class Boxes:
         length, width = self.referent[0] + other[0], self.referent[1] + other[1]
         if length + width == 0.0:
             return np.zeros_like(directions)
-        off = unit(directions - yaws[:, None])
+        off = directions - yaws[:, None]
         with np.errstate(divide="ignore", invalid="ignore"):
-            along = np.where(off[..., 0] != 0.0, length / np.abs(off[..., 0]), np.inf)
-            across = np.where(off[..., 1] != 0.0, width / np.abs(off[..., 1]), np.inf)
-        return np.asarray(np.minimum(along, across))
+            return np.asarray(1.0 / np.fmax(np.abs(np.cos(off)) / length, np.abs(np.sin(off)) / width))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -14,18 +14,31 @@ from qsrlang.language.syntax import Frame
 
 @dataclass(frozen=True, slots=True)
 class Anchor:
-    """A placed object: its block of the state, and the column of its heading, which is that of its root landmark.
+    """A placed object: the first of the columns of its place, and that of its heading, which its root landmark gives.
 
     `heading` is None where the root landmark has none.
     """
 
-    block: slice
+    start: int
     heading: int | None
     root: str
 
     def positions(self, states: FloatArray) -> FloatArray:
         """Return where the object is in each state (P, n): (P, 2) [m]."""
-        return states[:, self.block][:, :2]
+        return states[:, self.start : self.start + 2]
+
+    def turning_axes(
+        self, frames: tuple[Frame, ...], viewer: Pose2 | None, heading: float, is_certain: bool
+    ) -> tuple[float, ...] | None:
+        """Return the axes of frames less the heading [rad] of this relatum; None where they depend on more than that.
+
+        Where the heading is certain, the absolute axis is the same in every state too.
+        """
+        if self.heading is None or (viewer is not None and Frame.RELATIVE in frames):
+            return None
+        if Frame.ABSOLUTE in frames and not is_certain:
+            return None
+        return tuple(0.5 * np.pi - heading if one is Frame.ABSOLUTE else np.pi for one in frames)
 
     def poses(self, states: FloatArray) -> FloatArray:
         """Return position and heading of the object in each state (P, n): (P, 3) [m, m, rad]."""

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 
 from qsrlang.errors import MissingFacingError
 from qsrlang.geometry.polygon import ConvexPolygon
 from qsrlang.geometry.pose import Pose2
-from qsrlang.relations.graph import Constraint, Landmark, ObjectClass, Pair, RelationGraph
+from qsrlang.relations.graph import Constraint, Landmark, ObjectClass, RelationGraph
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,31 +44,44 @@ def in_region(constraint: Constraint) -> bool:
     return any(atom.relation.region is not None for atom in constraint.atoms)
 
 
+def stated_regions(constraints: Iterable[Constraint]) -> dict[str, tuple[str, ...]]:
+    """Return what each referent is said to be on or in."""
+    regions: dict[str, tuple[str, ...]] = {}
+    for one in filter(in_region, constraints):
+        regions[one.referent] = (*regions.get(one.referent, ()), one.relatum)
+    return regions
+
+
 def support_of(
-    graph: RelationGraph, constraint: Constraint, others: Iterable[Constraint], seats: Mapping[str, Seat]
+    graph: RelationGraph,
+    constraint: Constraint,
+    regions: Mapping[str, tuple[str, ...]],
+    seats: Mapping[str, Seat],
 ) -> Support | None:
-    """Return what bounds the distances of a constraint, given the others of its world and what is placed.
+    """Return what bounds the distances of a constraint, given the regions stated in its world and what is placed.
 
     That is what the referent is said to be on or in, where the constraint's relatum is that too; else the surface
     its class stands on. None where neither is known, and for regions and ternary relations, which bound themselves.
     """
     if constraint.towards is not None or in_region(constraint):
         return None
-    stated = _stated_support(graph, constraint, others, seats)
+    stated = _stated_support(graph, constraint, regions, seats)
     return stated or _usual_support(graph, constraint, seats[constraint.relatum].root)
 
 
 def _stated_support(
-    graph: RelationGraph, constraint: Constraint, others: Iterable[Constraint], seats: Mapping[str, Seat]
+    graph: RelationGraph,
+    constraint: Constraint,
+    regions: Mapping[str, tuple[str, ...]],
+    seats: Mapping[str, Seat],
 ) -> Support | None:
-    regions: list[Pair] = [(one.referent, one.relatum) for one in others if in_region(one)]
-    for referent, name in regions:
-        if referent != constraint.referent or name not in seats:
+    for name in regions.get(constraint.referent, ()):
+        if name not in seats:
             continue
         kind, seat, is_relatum = graph.classes[graph.class_of(name)], seats[name], name == constraint.relatum
         if kind.width == 0.0 or seat.root.heading is None:
             continue
-        within = is_relatum or (constraint.relatum, name) in regions
+        within = is_relatum or name in regions.get(constraint.relatum, ())
         if within or (seat.is_landmark and _carries(graph, seat.root, seats[constraint.relatum].root)):
             return Support(kind, seat, is_relatum)
     return None
@@ -96,5 +110,6 @@ def _carries(graph: RelationGraph, surface: Landmark, root: Landmark) -> bool:
     return bool(inside)
 
 
+@lru_cache(maxsize=256)
 def _outline(kind: ObjectClass) -> ConvexPolygon:
     return ConvexPolygon.rectangle(Pose2(0.0, 0.0), kind.depth, kind.width)

@@ -84,5 +84,7 @@ def _graph(layers: tuple[Layer, ...], symbols: Symbols, circumstances: Circumsta
         symbols.defaults.get("reach", 1.0),
         MappingProxyType(symbols.roles),
         requirements,
-        tuple(symbols.scenes),
+        MappingProxyType(
+            {name: tuple(one.text for one in scene.members) for name, scene in symbols.scenes.items()}
+        ),
     )

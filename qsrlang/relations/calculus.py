@@ -14,7 +14,8 @@ MAX_CONJUNCTIONS = 64
 class Relation:
     """A relation: what it says of angle, distance and region, which relations it excludes, and how many it relates.
 
-    A `region` is the part of the relatum that the referent lies in: "top" or "inside".
+    A `region` is the part of the relatum that the referent lies in: "top" or "inside"; `components` is how many
+    Gaussians stand for the density of one atom.
     """
 
     name: str
@@ -25,6 +26,7 @@ class Relation:
     symmetric: bool = False
     region: str | None = None
     arity: int = 2
+    components: int = 1
 
     @property
     def terms(self) -> tuple[tuple[float, Relation], ...]:

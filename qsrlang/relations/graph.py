@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from enum import IntEnum
@@ -73,7 +74,8 @@ class Constraint:
     """What one statement says of where `referent` lies as seen from `relatum`: atoms that all hold, or a fit.
 
     Atoms of ternary relations have a second relatum, `towards`: their axis runs from `relatum` to it, and their
-    distances are shares of the way between the two.
+    distances are shares of the way between the two. `part` (j, k) is the j-th of k parts of equal mass, from one end
+    of its directions to the other; (0, 1) is the whole.
     """
 
     referent: str
@@ -82,6 +84,14 @@ class Constraint:
     statement: Statement
     fit: Fit | None = None
     towards: str | None = None
+    part: tuple[int, int] = (0, 1)
+
+    @property
+    def parts(self) -> int:
+        """In how many parts it is split: the least `components` of the atoms that tell a direction, else of all."""
+        directed = [atom.relation.components for atom in self.atoms if atom.relation.angle is not None]
+        others = [atom.relation.components for atom in self.atoms]
+        return 1 if self.fit is not None else min(directed or others, default=1)
 
     @property
     def relata(self) -> tuple[str, ...]:
@@ -138,8 +148,9 @@ class Requirement:
 class RelationGraph:
     """All that is known: an edge (referent, relatum) for every pair that a choice speaks of.
 
-    `roles` maps the objects that scenes tell apart by a role, such as `left: Cup`, to their classes; `scenes` are the
-    names of those that have one.
+    `roles` maps the objects that scenes tell apart by a role, such as `left: Cup`, to their classes; `scenes` maps the
+    names of those that have one to their members. `evidence` are the choices that speak of referents whose places
+    landmarks give.
     """
 
     classes: Mapping[str, ObjectClass]
@@ -149,7 +160,27 @@ class RelationGraph:
     reach: float
     roles: Mapping[str, str] = field(default_factory=dict)
     requirements: tuple[Requirement, ...] = ()
-    scenes: tuple[str, ...] = ()
+    scenes: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    _choices_of: Mapping[str, tuple[Choice, ...]] = field(init=False, repr=False, compare=False)
+    _instances_of: Mapping[str, tuple[Landmark, ...]] = field(init=False, repr=False, compare=False)
+    _kinds: Mapping[str, str] = field(init=False, repr=False, compare=False)
+    evidence: tuple[tuple[str, Choice], ...] = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        choices: dict[str, list[Choice]] = defaultdict(list)
+        for choice in self.choices:
+            for referent in dict.fromkeys(pair[0] for pair in sorted(choice.governs)):
+                choices[referent].append(choice)
+        instances: dict[str, list[Landmark]] = defaultdict(list)
+        for landmark in self.landmarks:
+            for name in dict.fromkeys((landmark.name, landmark.kind)):
+                instances[name].append(landmark)
+        kinds = {**self.roles, **{landmark.name: landmark.kind for landmark in reversed(self.landmarks)}}
+        object.__setattr__(self, "_kinds", kinds)
+        seen = sorted(instances.keys() & choices.keys())
+        object.__setattr__(self, "evidence", tuple((name, one) for name in seen for one in choices[name]))
+        object.__setattr__(self, "_choices_of", {name: tuple(found) for name, found in choices.items()})
+        object.__setattr__(self, "_instances_of", {name: tuple(found) for name, found in instances.items()})
 
     def node_of(self, name: str) -> str:
         """Return what statements about a name are about: a role is its own, a landmark counts as its class."""
@@ -161,12 +192,11 @@ class RelationGraph:
 
     def choices_for(self, referent: str) -> tuple[Choice, ...]:
         """Return the choices that say where `referent` is."""
-        return tuple(c for c in self.choices if any(pair[0] == referent for pair in c.governs))
+        return self._choices_of.get(referent, ())
 
     def class_of(self, name: str) -> str:
         """Return the class that the name of a class, a landmark or a role stands for."""
-        kinds = (landmark.kind for landmark in self.landmarks if landmark.name == name)
-        return next(kinds, self.roles.get(name, name))
+        return self._kinds.get(name, name)
 
     def roles_of(self, kind: str) -> tuple[str, ...]:
         """Return the objects that scenes tell apart by a role among the instances of a class."""
@@ -174,4 +204,4 @@ class RelationGraph:
 
     def instances_of(self, name: str) -> tuple[Landmark, ...]:
         """Return the landmarks that a class or landmark name stands for."""
-        return tuple(landmark for landmark in self.landmarks if name in (landmark.name, landmark.kind))
+        return self._instances_of.get(name, ())

@@ -218,6 +218,9 @@ class Symbols:
             self.report(
                 "Q412", f"'{relation.name}' has a region beside an angle or a distance", relation.name, note
             )
+        if relation.region is not None and relation.components > 1:
+            note = "a region is one component"
+            self.report("Q412", f"'{relation.name}' has a region beside components", relation.name, note)
         for name in (*relation.disjoint, *filter(None, [relation.converse])):
             self.resolve_relation(name)
 

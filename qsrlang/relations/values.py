@@ -30,5 +30,13 @@ def relation_value(node: st.Relation) -> Relation:
     disjoint = tuple(name.text for name in node.disjoint)
     arity = len(node.parameters)
     return Relation(
-        node.name.text, node.angle, node.distance, converse, disjoint, node.symmetric, node.region, arity
+        node.name.text,
+        node.angle,
+        node.distance,
+        converse,
+        disjoint,
+        node.symmetric,
+        node.region,
+        arity,
+        node.components,
     )

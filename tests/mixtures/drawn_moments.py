@@ -14,7 +14,8 @@ DRAWS = 60_000
 
 def assert_draws_have_the_moments(conditional: Conditional, state: FloatArray, seed: int = 7) -> None:
     """Check mean and covariance; false-alarm rate below 1e-5: five standard errors, from the draws' own spread."""
-    draws = conditional.sample(np.tile(state, (DRAWS, 1)), np.random.default_rng(seed))
+    uniforms = np.random.default_rng(seed).random((DRAWS, 3))
+    draws = conditional.sample(np.tile(state, (DRAWS, 1)), uniforms)
     (mean,), (covariance,) = conditional.moments(state[None])
     centred = draws - mean
     assert (np.abs(centred.mean(axis=0)) <= 5.0 * centred.std(axis=0) / math.sqrt(DRAWS)).all()

@@ -11,8 +11,8 @@ from rigid_motions import assert_moves_with_its_landmarks
 from strategies import poses
 
 import qsrlang as qsr
+from qsrlang.mixtures.conditionals import make_conditional
 from qsrlang.mixtures.plans import plan_world
-from qsrlang.mixtures.resolve import make_conditional
 from qsrlang.mixtures.worlds import enumerate_worlds
 
 HEAD = """
@@ -37,9 +37,8 @@ def only_conditional(text, target="X"):
     """What the only constraint on a target says, and the state of its landmarks."""
     (world,) = enumerate_worlds(text.graph, target)
     plan = plan_world(text.graph, world, target)
-    blocks = {one.name: slice(3 * at, 3 * at + 3) for at, one in enumerate(plan.landmarks)}
-    state = np.array([[one.x, one.y, one.heading or 0.0] for one in plan.landmarks]).ravel()
-    return make_conditional(text.graph, plan.steps[0], blocks, None), state
+    layout = plan.layout
+    return make_conditional(text.graph, plan.steps[0], layout.anchor, None), layout.mean
 
 
 @pytest.mark.parametrize("relation", RELATIONS)
@@ -60,7 +59,7 @@ def test_the_density_sums_to_one_and_to_its_moments(relation):
 def test_on_the_way_from_where_the_boxes_touch_to_where_they_touch():
     p, b = "p : P at (0 m, 0 m)", "b : B at (1 m, 0 m) facing 90 deg"
     conditional, state = only_conditional(known("believe between(X, P, B).", p, b))
-    draws = conditional.sample(np.tile(state, (4000, 1)), np.random.default_rng(0))
+    draws = conditional.sample(np.tile(state, (4000, 1)), np.random.default_rng(0).random((4000, 3)))
     assert np.hypot(*draws.T).min() >= 0.04, "half a cup from the point"
     assert draws[:, 0].max() <= 1.0 - 0.1 - 0.04 + 1e-9, "B is 20 cm wide, and stands across"
     assert draws[:, 0].max() > 0.85
@@ -71,7 +70,7 @@ def test_each_box_has_its_own_heading():
     for facing, second in ((90, 0.1), (0, 0.3)):
         b = f"b : B at (1 m, 0 m) facing {facing} deg"
         conditional, state = only_conditional(known("believe nearer(X, P, B).", "p : P at (0 m, 0 m)", b))
-        draws = conditional.sample(np.tile(state, (4000, 1)), np.random.default_rng(0))
+        draws = conditional.sample(np.tile(state, (4000, 1)), np.random.default_rng(0).random((4000, 3)))
         assert draws[:, 0].max() == pytest.approx(0.5 * (0.04 + 1.0 - second - 0.04), abs=5e-3)
 
 

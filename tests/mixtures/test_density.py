@@ -72,7 +72,7 @@ def test_moments_equal_those_of_draws(names, boxes, support):
     """False-alarm rate below 1e-5 a case: five standard errors, from the draws' own spread."""
     factor = density(*names, boxes=boxes, support=support)
     count = 60_000
-    draws = factor.sample(stance(factor, count), np.random.default_rng(7))
+    draws = factor.sample(stance(factor, count), np.random.default_rng(7).random((count, 3)))
     (mean,), (covariance,) = factor.moments(stance(factor))
     centred = draws - mean
     assert (np.abs(centred.mean(axis=0)) < 5.0 * centred.std(axis=0) / math.sqrt(count)).all()

@@ -249,12 +249,20 @@ def test_what_is_seen_is_a_landmark_at_once():
     np.testing.assert_allclose(seen.means, [[0.3, -0.4]])
 
 
-def test_too_many_combinations_are_refused():
+def test_the_likeliest_combinations_are_kept_and_the_mass_of_the_others_is_told():
     names = [f"K{number}" for number in range(16)]
     text = f"static R. dynamic {', '.join(names)}. "
     text += " ".join(
-        f"believe left-of({a}, {b}) | right-of({a}, {b})." for a, b in zip(names[1:], names, strict=False)
+        f"believe 0.9 :: left-of({a}, {b}) | 0.1 :: right-of({a}, {b})."
+        for a, b in zip(names[1:], names, strict=False)
     )
-    text += " observe left-of(K0, R)."
-    with pytest.raises(qsr.QSRError, match="10000 combinations"):
-        qsr.parse_knowledge(text).where("K15", {"R": qsr.Pose2(0.0, 0.0)})
+    known = qsr.parse_knowledge(text + " observe left-of(K0, R).")
+    answer = known.where("K15", {"R": qsr.Pose2(0.0, 0.0)}, max_worlds=100, max_components=20)
+    swaps = [math.comb(15, count) * 0.9 ** (15 - count) * 0.1**count for count in range(3)]
+    fewest = sum(swaps[:2]) + (100 - 16) * 0.9**13 * 0.1**2
+    assert answer.dropped == pytest.approx(1.0 - fewest)
+    assert len(answer.weights) == 20
+    assert sum(answer.weights) == pytest.approx(1.0)
+    assert "dropped" in str(answer)
+    whole = known.where("K2", {"R": qsr.Pose2(0.0, 0.0)})
+    assert whole.dropped == 0.0

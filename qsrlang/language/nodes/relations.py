@@ -9,6 +9,7 @@ from qsrlang.language.nodes.builder import ANGLE, LENGTH, Builder, Field, nodes_
 from qsrlang.language.statements import Relation
 
 FRACTION = s.Dimension.FRACTION
+MAX_COMPONENTS = 64
 
 
 class RelationNodes(Builder):
@@ -50,6 +51,14 @@ class RelationNodes(Builder):
     def symmetric(self, children: list[Any]) -> Field:
         """`symmetric: yes`"""
         return Field(self.span(children), "symmetric", children[2] == "yes")
+
+    def components(self, children: list[Any]) -> Field:
+        """`components: 4`"""
+        token = children[2]
+        count = float(token)
+        if count != int(min(count, 1e9)) or not 1 <= count <= MAX_COMPONENTS:
+            self.refuse("Q303", f"expected 1 to {MAX_COMPONENTS} components", self.place(token))
+        return Field(self.span(children), "components", int(min(count, MAX_COMPONENTS)))
 
     def normal(self, children: list[Any]) -> s.Normal:
         """`normal(mean, deviation)`"""

@@ -161,6 +161,8 @@ class _Printer:
             fields.append(f"disjoint: {names}" if len(relation.disjoint) == 1 else f"disjoint: ({names})")
         if relation.symmetric or not fields:
             fields.append(f"symmetric: {'yes' if relation.symmetric else 'no'}")
+        if relation.components > 1:
+            fields.append(f"components: {relation.components}")
         return f"relation {relation.name}({_listed(relation.parameters)}) {_braced(fields)}"
 
     def query(self, query: q.Query) -> str:

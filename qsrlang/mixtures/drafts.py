@@ -1,0 +1,252 @@
+"""Drafts of worlds: names are visited from a target on, and each opens what is still to be decided about it."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TypeAlias
+
+from qsrlang.mixtures.chains import needed_for
+from qsrlang.mixtures.roles import instances_in_roles, is_unplaced_role, landmarks_of_role
+from qsrlang.relations.graph import Alternative, Authority, Choice, Constraint, Landmark, Pair, RelationGraph
+
+MIN_SHARE = 1e-9
+
+Decision: TypeAlias = tuple[float, "Callable[[Draft], None]"]
+
+
+@dataclass(slots=True)
+class Draft:
+    """A world in the making: what is decided, what it weighs, and the names that are still to be visited.
+
+    `likeness` is the product of share / greatest share over the `depth` decisions made.
+    """
+
+    pending: deque[str]
+    weight: float = 1.0
+    likeness: float = 1.0
+    depth: int = 0
+    visited: set[str] = field(default_factory=set)
+    covered: set[Pair] = field(default_factory=set)
+    decided: set[int] = field(default_factory=set)
+    told: set[int] = field(default_factory=set)
+    constraints: list[Constraint] = field(default_factory=list)
+    relata: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    whole: list[int] = field(default_factory=list)
+    bindings: dict[str, Landmark] = field(default_factory=dict)
+    aliases: dict[str, str] = field(default_factory=dict)
+    absent: list[str] = field(default_factory=list)
+    seen: set[str] = field(default_factory=set)
+
+    @classmethod
+    def start(cls, targets: Iterable[str]) -> Draft:
+        """Return the draft in which nothing is decided."""
+        return cls(deque(targets))
+
+    def branches(self, graph: RelationGraph, in_parts: bool) -> list[Draft] | None:
+        """Return the drafts that the next open decision leads to, or None where all is decided."""
+        while True:
+            decisions = self._next_decisions(graph, in_parts)
+            if decisions is None:
+                return None
+            if len(decisions) != 1:
+                return [self._after(decision, decisions) for decision in decisions]
+            ((share, act),) = decisions
+            self.weight *= share
+            act(self)
+
+    def _next_decisions(self, graph: RelationGraph, in_parts: bool) -> Sequence[Decision] | None:
+        while in_parts and self.whole:
+            return _parts(self.whole.pop(), self.constraints)
+        while self.pending:
+            name = self.pending[0]
+            if name in self.visited:
+                self.pending.popleft()
+                continue
+            decisions = self._decisions_on(graph, name)
+            if decisions is not None:
+                return decisions
+            self.pending.popleft()
+            self.visited.add(name)
+            self.pending += dict.fromkeys(self.relata.get(name, ()))
+        return self._evidence(graph)
+
+    def _decisions_on(self, graph: RelationGraph, name: str) -> Sequence[Decision] | None:
+        instances = graph.instances_of(name)
+        if instances:
+            return _bindings(name, [(1.0 / len(instances), landmark) for landmark in instances])
+        if is_unplaced_role(graph, name):
+            return _bindings(name, self._landmarks_of_role(graph, name))
+        candidates = self._candidates(graph, name)
+        if candidates:
+            return [(1.0 / len(candidates), _stand_in(name, one)) for one in candidates]
+        choice = self._open_choice(graph, name)
+        return None if choice is None else self._alternatives(graph, choice)
+
+    def _evidence(self, graph: RelationGraph) -> Sequence[Decision] | None:
+        """Return what is to be decided about an object that is seen and tells of what is visited, or None."""
+        for name, choice in graph.evidence:
+            if id(choice) in self.told or not self._tells(graph, name, choice):
+                continue
+            if name not in self.visited:
+                return [(1.0, _visit((name,)))]
+            self.told.add(id(choice))
+            self.seen.add(name)
+            if any(pair[0] == name and pair not in self.covered for pair in choice.governs):
+                return self._alternatives(graph, choice)
+            return [(1.0, _visit(self.relata.get(name, ())))]
+        return None
+
+    def _tells(self, graph: RelationGraph, name: str, choice: Choice) -> bool:
+        relata = {one for pair in choice.governs if pair[0] == name for one in pair[1].split(" and ")}
+        return any(self._is_open(graph, one) for one in self.visited & {name, *relata})
+
+    def _is_open(self, graph: RelationGraph, name: str) -> bool:
+        """Return whether it is not certain where something is: it is no landmark, or one of several, or not exact."""
+        landmark = self.bindings.get(name)
+        return landmark is None or any(landmark.deviation) or len(graph.instances_of(name)) > 1
+
+    def _landmarks_of_role(
+        self, graph: RelationGraph, role: str
+    ) -> tuple[tuple[float, Landmark | None], ...]:
+        kind = graph.roles[role]
+        named = {role, *(one for c in self.constraints for one in (c.referent, *c.relata))}
+        alike = {one for one in named if graph.roles.get(one) == kind and is_unplaced_role(graph, one)}
+        taken = {landmark.name for name, landmark in self.bindings.items() if name in alike}
+        return landmarks_of_role(graph, role, taken, len(alike - self.visited))
+
+    def _candidates(self, graph: RelationGraph, name: str) -> tuple[str, ...]:
+        """Return what a class may be, if that is open: one of its roles, or itself."""
+        if not graph.roles or name in self.aliases or name in self.relata:
+            return ()
+        candidates = instances_in_roles(graph, name)
+        return tuple(one for one in candidates if one == name or not self._differ(one, name))
+
+    def _differ(self, role: str, name: str) -> bool:
+        """Return whether a role is not what a name stands for: one constraint names both, or the role depends on it."""
+        if any({role, name} <= {one.referent, *one.relata} for one in self.constraints):
+            return True
+        return name in needed_for((role,), self.constraints)
+
+    def _open_choice(self, graph: RelationGraph, name: str) -> Choice | None:
+        for choice in graph.choices_for(name):
+            if id(choice) not in self.decided and any(
+                pair[0] == name and pair not in self.covered for pair in choice.governs
+            ):
+                return choice
+        return None
+
+    def _alternatives(self, graph: RelationGraph, choice: Choice) -> list[Decision]:
+        alternatives = self._compatible(graph, choice)
+        rest = 1.0 - sum(alternative.share for alternative in alternatives)
+        decisions: list[Decision] = [(rest, _elsewhere(choice))] if rest > MIN_SHARE else []
+        return [*decisions, *((one.share, _take(graph, choice, one)) for one in alternatives)]
+
+    def _compatible(self, graph: RelationGraph, choice: Choice) -> tuple[Alternative, ...]:
+        """Return the alternatives; scenes that were already passed over for another are left out if any remain."""
+        if choice.authority is not Authority.SCENE:
+            return tuple(one for one in choice.alternatives if one.share > 0.0)
+        free = [
+            one
+            for one in choice.alternatives
+            if not any(graph.pair_of(c) in self.covered for c in one.constraints)
+        ]
+        kept = free or list(choice.alternatives)
+        total = sum(alternative.share for alternative in kept)
+        return tuple(Alternative(alternative.share / total, alternative.constraints) for alternative in kept)
+
+    def add(self, constraint: Constraint) -> None:
+        """Take in a constraint; where its referent is visited already, its relata are to be."""
+        if constraint.parts > 1:
+            self.whole.append(len(self.constraints))
+        self.constraints.append(constraint)
+        referent = constraint.referent
+        self.relata[referent] = (*self.relata.get(referent, ()), *constraint.relata)
+        if referent in self.visited:
+            self.pending += constraint.relata
+
+    def _after(self, decision: Decision, among: Sequence[Decision]) -> Draft:
+        share, act = decision
+        draft = replace(
+            self,
+            pending=self.pending.copy(),
+            weight=self.weight * share,
+            likeness=self.likeness * share / max(one for one, _ in among),
+            depth=self.depth + 1,
+            visited=self.visited.copy(),
+            covered=self.covered.copy(),
+            decided=self.decided.copy(),
+            told=self.told.copy(),
+            constraints=self.constraints.copy(),
+            relata=self.relata.copy(),
+            whole=self.whole.copy(),
+            bindings=self.bindings.copy(),
+            aliases=self.aliases.copy(),
+            absent=self.absent.copy(),
+            seen=self.seen.copy(),
+        )
+        act(draft)
+        return draft
+
+
+def _visit(names: Sequence[str]) -> Callable[[Draft], None]:
+    return lambda draft: draft.pending.extend(names)
+
+
+def _bindings(name: str, instances: Iterable[tuple[float, Landmark | None]]) -> list[Decision]:
+    def bind(landmark: Landmark | None) -> Callable[[Draft], None]:
+        def act(draft: Draft) -> None:
+            draft.pending.popleft()
+            draft.visited.add(name)
+            if landmark is not None:
+                draft.bindings[name] = landmark
+
+        return act
+
+    return [(share, bind(landmark)) for share, landmark in instances]
+
+
+def _stand_in(name: str, candidate: str) -> Callable[[Draft], None]:
+    def act(draft: Draft) -> None:
+        draft.aliases[name] = candidate
+        draft.pending[0] = candidate
+        if candidate != name:
+            draft.visited.add(name)
+
+    return act
+
+
+def _take(graph: RelationGraph, choice: Choice, alternative: Alternative) -> Callable[[Draft], None]:
+    def act(draft: Draft) -> None:
+        for constraint in alternative.constraints:
+            if graph.pair_of(constraint) not in draft.covered:
+                draft.add(constraint)
+        draft.covered.update(graph.pair_of(constraint) for constraint in alternative.constraints)
+        draft.decided.add(id(choice))
+
+    return act
+
+
+def _elsewhere(choice: Choice) -> Callable[[Draft], None]:
+    """What a choice speaks of is somewhere that no statement names; what is seen is where it is seen."""
+
+    def act(draft: Draft) -> None:
+        draft.absent += sorted({referent for referent, _ in choice.governs} - draft.bindings.keys())
+        draft.covered |= choice.governs
+        draft.decided.add(id(choice))
+
+    return act
+
+
+def _parts(at: int, constraints: Sequence[Constraint]) -> list[Decision]:
+    """Return the parts of equal mass that a constraint is split into."""
+    count = constraints[at].parts
+
+    def take(number: int) -> Callable[[Draft], None]:
+        def act(draft: Draft) -> None:
+            draft.constraints[at] = replace(draft.constraints[at], part=(number, count))
+
+        return act
+
+    return [(1.0 / count, take(number)) for number in range(count)]
