@@ -58,10 +58,13 @@ class ConvexPolygon:
         A ray that starts outside the (moved) border gets a negative length or 0.
         """
         slack = self.signed_distances(origins) - np.asarray(margins, dtype=np.float64)
-        speed = -np.asarray(directions, dtype=np.float64) @ self.normals.T
+        x, y = np.moveaxis(np.asarray(directions, dtype=np.float64), -1, 0)
+        shortest = np.full(np.broadcast_shapes(slack.shape[:-1], x.shape), np.inf)
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-            lengths = np.where(speed > 0.0, slack / speed, np.inf)
-        return np.asarray(lengths.min(axis=-1))
+            for edge, (across, along) in enumerate(self.normals):
+                speed = -(x * across + y * along)
+                np.minimum(shortest, np.where(speed > 0.0, slack[..., edge] / speed, np.inf), out=shortest)
+        return shortest
 
     def box_reach(self, box_yaw: npt.ArrayLike, half_length: float, half_width: float) -> FloatArray:
         """Return how far boxes turned by `box_yaw` (...) reach from their centres to each edge: (..., K) [m]."""
@@ -73,10 +76,16 @@ class ConvexPolygon:
     def nearest(self, points: npt.ArrayLike) -> FloatArray:
         """Return the point of the polygon nearest to each point (..., 2): the point itself where it is inside."""
         points = np.asarray(points, dtype=np.float64)
+        outside = ~self.contains(points)
+        nearest = np.array(points)
+        nearest[outside] = self._feet(points[outside])
+        return nearest
+
+    def _feet(self, points: FloatArray) -> FloatArray:
+        """Return the point of the border nearest to each point (P, 2): (P, 2)."""
         edges = np.roll(self.corners, -1, axis=0) - self.corners
-        along = np.einsum("...kd,kd->...k", points[..., None, :] - self.corners, edges)
+        along = np.einsum("pkd,kd->pk", points[:, None] - self.corners, edges)
         share = np.clip(along / np.einsum("kd,kd->k", edges, edges), 0.0, 1.0)
         feet = self.corners + share[..., None] * edges
-        nearest = np.linalg.norm(feet - points[..., None, :], axis=-1).argmin(axis=-1)
-        foot = np.take_along_axis(feet, nearest[..., None, None], axis=-2)[..., 0, :]
-        return np.where(self.contains(points)[..., None], points, foot)
+        nearest = np.linalg.norm(feet - points[:, None], axis=-1).argmin(axis=-1)
+        return np.asarray(feet[np.arange(len(points)), nearest])

@@ -57,3 +57,13 @@ def needed_for(names: Collection[str], constraints: Iterable[Constraint]) -> fro
         needed.update(fresh)
         waiting += fresh
     return frozenset(needed)
+
+
+def depends_on(graph: RelationGraph, names: Iterable[str]) -> set[str]:
+    """Return names with all that statements place them by, and so on, up to what landmarks place."""
+    found, waiting = set(names), list(names)
+    while waiting:
+        fresh = {name for name in placed_by(graph, waiting.pop()) if not graph.instances_of(name)} - found
+        found |= fresh
+        waiting += fresh
+    return found

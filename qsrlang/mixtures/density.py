@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from qsrlang.arrays import FloatArray
+from qsrlang.arrays import BoolArray, FloatArray
 from qsrlang.errors import NoRoomError
 from qsrlang.geometry.angles import unit
 from qsrlang.geometry.polygon import ConvexPolygon
@@ -18,6 +18,8 @@ MIN_OVERLAP = 1e-12
 MIN_ROOM = 1e-3
 MIN_WAY = 1e-3
 _CHUNK = 4096
+_RETRIES = 12
+_MARGIN = 1e-12
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -139,7 +141,8 @@ class PolarDensity:
             axis=-1,
         )
         inside = support.nearest(local)
-        margins = support.box_reach(stance.yaws - yaw, *self.boxes.referent)
+        turns = stance.yaws - yaw
+        margins = support.box_reach(turns[:1] if (turns == turns[0]).all() else turns, *self.boxes.referent)
         return support.ray_lengths(inside[:, None], unit(directions - yaw[:, None]), margins[:, None])
 
     def _nodes(self, stance: Stance) -> tuple[FloatArray, FloatArray]:
@@ -191,17 +194,32 @@ class PolarDensity:
         return np.asarray(np.concatenate(parts)[which])
 
     def _draw_directly(self, stance: Stance, uniforms: FloatArray) -> FloatArray:
-        """Invert the angle's own distribution; where that direction has no room, invert that of those that have."""
+        """Invert the angle's own distribution, again and again where that direction has no room, _RETRIES times.
+
+        The few that are left invert the distribution of the directions that have room. Numbers for the retries come
+        from a generator that the third of the uniform numbers seeds.
+        """
+        points, has_room = self._draw_any(stance, uniforms)
+        waiting = np.flatnonzero(~has_room)
+        rng = np.random.default_rng(uniforms[:8, 2].view(np.uint64))
+        for _ in range(_RETRIES):
+            if len(waiting) == 0:
+                return points
+            numbers = rng.random((len(waiting), 2)).clip(_MARGIN, 1.0 - _MARGIN)
+            points[waiting], has_room = self._draw_any(stance.at(waiting), numbers)
+            waiting = waiting[~has_room]
+        numbers = rng.random((len(waiting), 2))
+        points[waiting] = self._draw_by_inversion(stance.at(waiting), numbers)
+        return points
+
+    def _draw_any(self, stance: Stance, uniforms: FloatArray) -> tuple[FloatArray, BoolArray]:
+        """Return draws (P, 2) whose direction may have no room, and whether it has (P,)."""
         theta = stance.axes[:, 0] + self.hands[0] * self.angles[0].quantile(uniforms[:, 0])
         low, high = (bound[:, 0] for bound in self.bounds(stance, theta[:, None]))
-        free = high > low
-        points = stance.positions + (low + uniforms[:, 1] * (high - low))[:, None] * unit(theta)
-        if not free.all():
-            again = uniforms[~free][:, [2, 1]]
-            points[~free] = self._draw_by_inversion(stance.at(~free), again)
-        return np.asarray(points)
+        return stance.positions + (low + uniforms[:, 1] * (high - low))[:, None] * unit(theta), high > low
 
     def _draw_by_inversion(self, stance: Stance, uniforms: FloatArray) -> FloatArray:
+        """Invert the distribution of all directions that have room, at the nodes of the quadrature."""
         chunks = [slice(at, at + _CHUNK) for at in range(0, max(len(stance.positions), 1), _CHUNK)]
         return np.concatenate([self._draw_rays(stance.at(chunk), uniforms[chunk]) for chunk in chunks])
 

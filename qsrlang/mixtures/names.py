@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from qsrlang.errors import UnknownNameError, ValueRangeError
 from qsrlang.language.questions import Explain, Landmarks, Prob, Query, Sample, Views, Where
 from qsrlang.language.syntax import Argument, Atom, atoms_of
+from qsrlang.mixtures.chains import depends_on
 from qsrlang.relations.graph import RelationGraph
 
 
@@ -26,6 +27,21 @@ def check_object(name: str, graph: RelationGraph) -> None:
     known = _objects(graph)
     if name not in known:
         raise UnknownNameError("role" if ":" in name else "class", name, known)
+
+
+def drawn_names(graph: RelationGraph, subject: str | None) -> tuple[str, ...]:
+    """Return the things that scenes of a subject are drawn of: a scene's members, a class with all that it is placed by.
+
+    Without a subject, all that statements relate. Raises UnknownNameError.
+    """
+    if subject is None:
+        constraints = (
+            one for choice in graph.choices for each in choice.alternatives for one in each.constraints
+        )
+        related = {graph.node_of(name) for one in constraints for name in (one.referent, *one.relata)}
+        return tuple(sorted(related))
+    _check_subject(subject, graph)
+    return graph.scenes.get(subject) or (subject, *sorted(depends_on(graph, (subject,)) - {subject}))
 
 
 def _check_subject(name: str, graph: RelationGraph) -> None:

@@ -12,16 +12,8 @@ from qsrlang.language.syntax import Atom, Formula, Not
 from qsrlang.mixtures.answers import Component, Where
 from qsrlang.mixtures.atoms import DRAWS, EXACT, GAUSSIAN, atom_probability
 from qsrlang.mixtures.chains import broken_chains
-from qsrlang.mixtures.conditioning import (
-    Condition,
-    Drawing,
-    Scenes,
-    conditions_on,
-    draw_scenes,
-    effective_draws,
-    objects_of,
-    ratio_error,
-)
+from qsrlang.mixtures.conditioning import Drawing, WorldDraws, draw_scenes, effective_draws, ratio_error
+from qsrlang.mixtures.conditions import Condition, conditions_on, objects_of
 from qsrlang.mixtures.inference import mixture_of, statements_of
 from qsrlang.mixtures.resolve import fitted
 from qsrlang.mixtures.solving import solve_worlds
@@ -135,7 +127,7 @@ def where_assuming(
     )
 
 
-def _component(scenes: Scenes, target: str) -> Component:
+def _component(scenes: WorldDraws, target: str) -> Component:
     plan = scenes.outlook.plan
     points = scenes.outlook.drawn.points(plan.seats[scenes.outlook.world.named(target)])
     weight = float(scenes.weights.sum())

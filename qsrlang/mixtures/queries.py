@@ -14,15 +14,18 @@ from qsrlang.errors import UnansweredQueryError, UnknownNameError, ValueRangeErr
 from qsrlang.geometry.pose import Pose2
 from qsrlang.language import questions
 from qsrlang.language.diagnostics import Diagnostic, raise_errors
+from qsrlang.language.nodes.questions import MAX_SCENES
 from qsrlang.language.parser import parse_formula, parse_landmark, parse_query
 from qsrlang.language.source import Source
 from qsrlang.language.syntax import Formula, atoms_of
 from qsrlang.mixtures.answers import Where
-from qsrlang.mixtures.conditioning import Drawing, conditions_on, objects_of
+from qsrlang.mixtures.conditioning import Drawing
+from qsrlang.mixtures.conditions import conditions_on, objects_of
 from qsrlang.mixtures.inference import Bounds, in_frame, rooted, where_by_sampling, where_exactly
-from qsrlang.mixtures.names import check_atom, check_object, check_question
+from qsrlang.mixtures.names import check_atom, check_object, check_question, drawn_names
 from qsrlang.mixtures.probability import Probability, probability, where_assuming
 from qsrlang.mixtures.reduction import MAX_COMPONENTS
+from qsrlang.mixtures.scenes import SceneSamples, sample_scenes
 from qsrlang.mixtures.worlds import MAX_WORLDS
 from qsrlang.relations.build import ANYWHERE, Built, build_graph
 from qsrlang.relations.contexts import Circumstances
@@ -141,6 +144,29 @@ class KnowledgeBase:
         graph = rooted(self.graph, objects_of(wanted, *([assumed] if assumed else [])))
         drawing = Drawing(samples, rng or np.random.default_rng(0), viewer)
         return probability(graph, wanted, assumed, drawing)
+
+    def sample(
+        self,
+        subject: str | None = None,
+        count: int = 1,
+        *,
+        given: str | Formula | None = None,
+        viewer: Pose2 | None = None,
+        rng: np.random.Generator | None = None,
+    ) -> SceneSamples:
+        """Return `count` joint scenes, drawn by `rng` (or a generator with seed 0), without boxes that overlap.
+
+        `subject` is a named scene, whose members are drawn, or a class, drawn with all that it is placed by; without one
+        all that statements speak of is drawn. What is `given` and required holds in every scene. Raises
+        UnreachedTargetError where no landmark is known and the objects hang on different classes, NoRoomError,
+        MissingFacingError, ImpossibleConditionError.
+        """
+        if not 1 <= count <= MAX_SCENES:
+            raise ValueRangeError("the number of scenes", count, f"1 to {MAX_SCENES}")
+        names = drawn_names(self.graph, subject)
+        conditions = conditions_on(self.graph, names, self._formula(given))
+        graph = rooted(self.graph, names)
+        return sample_scenes(graph, names, count, conditions, viewer, rng or np.random.default_rng(0))
 
     def ask(
         self,

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from qsrlang import geometry
 from qsrlang.arrays import FloatArray
 from qsrlang.geometry.angles import TURN, rotation, unit
 from qsrlang.mixtures.conditional import Conditional, Turning
 from qsrlang.mixtures.standpoint import Standpoint
 from qsrlang.relations.graph import Constraint, RelationGraph
+
+if TYPE_CHECKING:
+    pass
 
 MIN_SIDE = 1e-3
 
@@ -40,6 +46,21 @@ class BoxConditional:
         offsets = (uniforms[:, :2] - 0.5) * self._sides
         turn = rotation(self.standpoint.box_yaws(states))
         return np.asarray(self.standpoint.relatum.positions(states) + np.einsum("pij,pj->pi", turn, offsets))
+
+    def sample_inside(
+        self, states: FloatArray, uniforms: FloatArray, lines: Sequence[tuple[FloatArray, FloatArray]]
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return one draw (P, 2) from each state on the inner side of all lines, and the log (P,) of their share.
+
+        Lines are points (P, 2) and normals (P, 2) to the inside; where nothing is inside, the log is -inf.
+        """
+        turn = rotation(self.standpoint.box_yaws(states))
+        corners = np.array([[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]]) * self._sides
+        outline = self.standpoint.relatum.positions(states)[:, None] + corners @ turn.transpose(0, 2, 1)
+        points, normals = (np.ascontiguousarray(part) for part in zip(*lines, strict=True))
+        draws, areas = geometry.clipping.draw_inside(outline, points, normals, uniforms)
+        with np.errstate(divide="ignore"):
+            return draws, np.log(areas / (self.length * self.width))
 
     def pdf(self, points: FloatArray, states: FloatArray) -> FloatArray:
         """Return the density (P,) of one point (P, 2) per state [1/m^2]."""

@@ -84,3 +84,9 @@ def log_mean(weighted: Iterable[tuple[float, float]]) -> float:
         return 0.0
     total = sum(weight for weight, _ in weighted)
     return top + math.log(sum(weight * math.exp(log - top) for weight, log in weighted) / total)
+
+
+def log_mean_of(logs: FloatArray) -> float:
+    """Return log(mean e^l) of logs (P,); -inf where none is finite."""
+    top = float(logs.max())
+    return top + math.log(float(np.exp(logs - top).mean())) if math.isfinite(top) else -math.inf

@@ -1,0 +1,48 @@
+"""What is assumed: what a question gives, and what the knowledge requires of what the question depends on."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from qsrlang.arrays import BoolArray, FloatArray
+from qsrlang.language.syntax import Formula, atoms_of
+from qsrlang.mixtures.chains import depends_on
+from qsrlang.relations.graph import RelationGraph
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """A formula that is assumed: it holds where share is None, else it holds with this probability."""
+
+    formula: Formula
+    share: float | None
+    text: str
+
+    def factor(self, held: BoolArray) -> FloatArray:
+        """Return the weight (P,) that draws get by whether the formula holds in them."""
+        share = 1.0 if self.share is None else self.share
+        return np.where(held, share, 1.0 - share)
+
+
+def objects_of(*formulas: Formula) -> tuple[str, ...]:
+    """Return the names of the objects that formulas speak of."""
+    names = (argument.text for one in formulas for atom in atoms_of(one) for argument in atom.arguments)
+    return tuple(dict.fromkeys(names))
+
+
+def conditions_on(graph: RelationGraph, names: Sequence[str], given: Formula | None) -> tuple[Condition, ...]:
+    """Return what is given, and the requirements that speak of what the names depend on, or of what those do."""
+    found = [] if given is None else [Condition(given, None, " ".join(given.span.text.split()))]
+    open_ones = [Condition(one.formula, one.share, one.statement.text) for one in graph.requirements]
+    while open_ones:
+        named = [*names, *(name for one in found for name in objects_of(one.formula))]
+        reached = depends_on(graph, named)
+        linked = [one for one in open_ones if reached & set(objects_of(one.formula))]
+        if not linked:
+            break
+        found += linked
+        open_ones = [one for one in open_ones if one not in linked]
+    return tuple(found)
