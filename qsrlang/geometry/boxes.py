@@ -2,39 +2,35 @@
 
 from __future__ import annotations
 
+from typing import TypeAlias
+
 import numpy as np
 
 from qsrlang.arrays import BoolArray, FloatArray
 
+Half: TypeAlias = tuple[float, float]
+
 
 def overlap(
-    offsets: FloatArray, yaws: FloatArray, other_yaws: FloatArray, half: FloatArray, other_half: FloatArray
+    offsets: FloatArray, yaws: FloatArray, other_yaws: FloatArray, half: Half, other_half: Half
 ) -> BoolArray:
     """Return whether pairs of rectangles overlap: (P,).
 
     `offsets` (P, 2) lead from the centre of the one to that of the other [m], `yaws` (P,) are their headings [rad],
-    `half` (2,) their half lengths and half widths [m]. Separating axes: two rectangles are apart where their shadows on
+    `half` their half lengths and half widths [m]. Separating axes: two rectangles are apart where their shadows on
     the direction of one of the four sides are; boxes that touch do not overlap.
     """
     turns = other_yaws - yaws
     cos, sin = np.abs(np.cos(turns)), np.abs(np.sin(turns))
-    near = _shadows_meet(
-        offsets,
-        yaws,
-        half,
-        other_half[0] * cos + other_half[1] * sin,
-        other_half[0] * sin + other_half[1] * cos,
-    )
-    back = _shadows_meet(
-        offsets, other_yaws, other_half, half[0] * cos + half[1] * sin, half[0] * sin + half[1] * cos
-    )
-    return near & back
+    by_first = _shadows_meet(offsets, yaws, half, other_half, cos, sin)
+    return by_first & _shadows_meet(offsets, other_yaws, other_half, half, cos, sin)
 
 
 def _shadows_meet(
-    offsets: FloatArray, yaws: FloatArray, half: FloatArray, along: FloatArray, across: FloatArray
+    offsets: FloatArray, yaws: FloatArray, own: Half, other: Half, cos: FloatArray, sin: FloatArray
 ) -> BoolArray:
-    cos, sin = np.cos(yaws), np.sin(yaws)
-    x = offsets[:, 0] * cos + offsets[:, 1] * sin
-    y = offsets[:, 1] * cos - offsets[:, 0] * sin
-    return np.asarray((np.abs(x) < half[0] + along) & (np.abs(y) < half[1] + across))
+    """Return whether the shadows on the sides of one box meet; cos and sin (P,) are of the angle between the two."""
+    ahead, left = np.cos(yaws), np.sin(yaws)
+    along = np.abs(offsets[:, 0] * ahead + offsets[:, 1] * left) < own[0] + other[0] * cos + other[1] * sin
+    across = np.abs(offsets[:, 1] * ahead - offsets[:, 0] * left) < own[1] + other[0] * sin + other[1] * cos
+    return np.asarray(along & across)

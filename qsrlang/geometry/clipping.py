@@ -13,8 +13,8 @@ def draw_inside(
 ) -> tuple[FloatArray, FloatArray]:
     """Return a uniform draw (P, 2) from what is left of each of P convex polygons (P, V, 2), and its area (P,) [m^2].
 
-    Polygon p is cut by H lines, through `points` (H, P, 2), to the side that `normals` (H, P, 2) point to (Sutherland and
-    Hodgman 1974); where nothing is left, the area is 0. A draw is made of two uniform numbers (P, 2).
+    Polygon p is cut by H lines, through `points` (H, P, 2), to the side that `normals` (H, P, 2) point to (Sutherland
+    and Hodgman 1974); where nothing is left, the area is 0. A draw is made of two uniform numbers (P, 2).
     """
     draws, areas = np.empty((len(outlines), 2)), np.empty(len(outlines))
     _draw_inside(outlines, points, normals, uniforms, draws, areas)
@@ -86,4 +86,5 @@ def _pick(corners: FloatArray, count: int, u: float, v: float, draw: FloatArray)
 def _triangle(corners: FloatArray, at: int) -> float:  # pragma: no cover
     ax, ay = corners[at, 0] - corners[0, 0], corners[at, 1] - corners[0, 1]
     bx, by = corners[at + 1, 0] - corners[0, 0], corners[at + 1, 1] - corners[0, 1]
-    return 0.5 * abs(ax * by - ay * bx)
+    area: float = 0.5 * abs(ax * by - ay * bx)
+    return area

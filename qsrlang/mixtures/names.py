@@ -30,7 +30,7 @@ def check_object(name: str, graph: RelationGraph) -> None:
 
 
 def drawn_names(graph: RelationGraph, subject: str | None) -> tuple[str, ...]:
-    """Return the things that scenes of a subject are drawn of: a scene's members, a class with all that it is placed by.
+    """Return the things that scenes of a subject are drawn of: a scene's members, or a class with all it is placed by.
 
     Without a subject, all that statements relate. Raises UnknownNameError.
     """

@@ -156,8 +156,8 @@ class KnowledgeBase:
     ) -> SceneSamples:
         """Return `count` joint scenes, drawn by `rng` (or a generator with seed 0), without boxes that overlap.
 
-        `subject` is a named scene, whose members are drawn, or a class, drawn with all that it is placed by; without one
-        all that statements speak of is drawn. What is `given` and required holds in every scene. Raises
+        `subject` is a named scene, whose members are drawn, or a class, drawn with all that it is placed by; without
+        one all that statements speak of is drawn. What is `given` and required holds in every scene. Raises
         UnreachedTargetError where no landmark is known and the objects hang on different classes, NoRoomError,
         MissingFacingError, ImpossibleConditionError.
         """

@@ -47,7 +47,7 @@ class SceneSamples:
         return len(self.positions)
 
     def to_json(self) -> dict[str, object]:
-        """Return the scenes as plain data: for each the pose [x, y, heading] of every thing, null for what is elsewhere."""
+        """Return the scenes as plain data: of every thing the pose [x, y, heading], null for what is elsewhere."""
         poses = np.concatenate([self.positions, self.headings[..., None]], axis=2)
         scenes = [
             {
@@ -113,9 +113,9 @@ def sample_scenes(
 ) -> SceneSamples:
     """Return `count` independent joint scenes of the things named, given that no boxes overlap and conditions hold.
 
-    Rejection: a scene of weight w stays with probability w / bound. Where weights differ the bound is the greatest weight
-    seen so far, and what was kept under a smaller one is thinned to the new one (Caffo, Booth and Davis 2002). Raises
-    ImpossibleConditionError beyond MAX_DRAWS_PER_SCENE draws for each scene.
+    Rejection: a scene of weight w stays with probability w / bound. Where weights differ the bound is the greatest
+    weight seen so far, and what was kept under a smaller one is thinned to the new one (Caffo, Booth and Davis 2002).
+    Raises ImpossibleConditionError beyond MAX_DRAWS_PER_SCENE draws for each scene.
     """
     sources = _sources(graph, names, conditions, viewer)
     priors = np.array([one.world.weight for one in sources])
@@ -130,7 +130,8 @@ def sample_scenes(
             for source, scale, number in zip(sources, scales, counts, strict=True)
             if number
         ]
-        kept.add(*(np.concatenate(parts) for parts in zip(*found, strict=True)), rng)
+        positions, headings = (np.concatenate(parts) for parts in zip(*found, strict=True))
+        kept.add(positions, headings, rng)
     texts = tuple(dict.fromkeys(one.text for one in conditions))
     return SceneSamples(tuple(names), *kept.first(count), kept.draws, texts)
 

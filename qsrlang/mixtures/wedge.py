@@ -13,7 +13,7 @@ from qsrlang.mixtures.supports import Seat
 
 @dataclass(frozen=True, slots=True)
 class Wedge:
-    """Directions from an `apex`, counter-clockwise over `width` < pi from `start` [rad] past the heading of `turning`."""
+    """Directions from an `apex`, over `width` < pi counter-clockwise from `start` [rad] past `turning`'s heading."""
 
     apex: Seat
     turning: Seat

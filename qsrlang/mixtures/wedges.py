@@ -100,7 +100,7 @@ def _wedge(
 def _aim(
     graph: RelationGraph, plan: Plan, step: Step, atom: Atom, viewer: Pose2 | None
 ) -> tuple[float, float] | None:
-    """Return from which angle past the relatum's heading, over which width, an atom holds, if it is one convex wedge."""
+    """Return from which angle past the relatum's heading, over which width, an atom holds, if that is one wedge."""
     relation = graph.relations[atom.relation.text]
     if relation.angle is None or relation.distance or relation.region or step.second:
         return None
