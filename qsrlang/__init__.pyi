@@ -37,9 +37,12 @@ from .maps.rosmap import read_ros_map
 from .maps.supports import Supports, find_supports
 from .maps.voxels import VoxelGrid
 from .mixtures.answers import Component, Where
+from .mixtures.explanation import Explanation, Proof, Reason, Spot
 from .mixtures.gaussian import GaussianMixture
+from .mixtures.information import LandmarkRanking, LandmarkValue
 from .mixtures.probability import Probability
 from .mixtures.queries import Answer, KnowledgeBase, load, parse_knowledge
+from .mixtures.scenes import SceneSamples
 from .planning.belief import voxel_weights
 from .planning.loop import search_world
 from .planning.outcome import Limits, SearchResult, SearchStep
@@ -87,12 +90,15 @@ __all__ = [
     "Drive",
     "Edit",
     "Experiment",
+    "Explanation",
     "FileError",
     "GaussianMixture",
     "ImpossibleConditionError",
     "Interval",
     "KnowledgeBase",
     "Landmark",
+    "LandmarkRanking",
+    "LandmarkValue",
     "LanguageError",
     "Limits",
     "Look",
@@ -108,19 +114,23 @@ __all__ = [
     "Planner",
     "Pose2",
     "Probability",
+    "Proof",
     "PybulletWorld",
     "QSRError",
     "QSRPlanner",
     "RandomPlanner",
+    "Reason",
     "RelationGraph",
     "Robot",
     "Room",
     "Scenario",
+    "SceneSamples",
     "SearchResult",
     "SearchStep",
     "SearchStory",
     "Sector",
     "Sight",
+    "Spot",
     "Supports",
     "Trial",
     "TrialSeeds",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from rich.console import Console
 from rich.markup import escape
@@ -12,15 +13,30 @@ import qsrlang as qsr
 
 
 def print_answer(answer: qsr.Answer, console: Console, title: str) -> None:
-    """Print an answer as a table: of `where`, with the numbers of the statements behind each component."""
-    if isinstance(answer, qsr.Probability):
-        console.print(title, markup=False, highlight=False, soft_wrap=True)
-        console.print(probability_table(answer))
-    else:
+    """Print an answer: as a table, with the numbers of the statements behind each component, or as a tree."""
+    if isinstance(answer, qsr.Where):
         _print_where(answer, console, title)
+    elif isinstance(answer, qsr.Explanation):
+        for line in answer.lines():
+            console.print(line, highlight=False, markup=False, soft_wrap=True)
+    else:
+        console.print(title, markup=False, highlight=False, soft_wrap=True)
+        console.print(table_of(answer))
     if answer.assumed:
-        assumed = f"assumed: {'; '.join(answer.assumed)} (as good as {answer.draws:.0f} independent draws)"
-        console.print(assumed, highlight=False, markup=False, soft_wrap=True)
+        assumed = f"assumed: {'; '.join(answer.assumed)}"
+        good = "" if answer.draws is None else f" (as good as {answer.draws:.0f} independent draws)"
+        console.print(assumed + good, highlight=False, markup=False, soft_wrap=True)
+
+
+def table_of(answer: qsr.Probability | qsr.LandmarkRanking | qsr.SceneSamples) -> Table:
+    """Return an answer as a table."""
+    match answer:
+        case qsr.Probability():
+            return probability_table(answer)
+        case qsr.LandmarkRanking():
+            return ranking_table(answer)
+        case qsr.SceneSamples():
+            return scenes_table(answer)
 
 
 def title_of(query: str) -> str:
@@ -29,12 +45,53 @@ def title_of(query: str) -> str:
 
 
 def probability_table(answer: qsr.Probability) -> Table:
-    """Return a probability with its standard error as a table."""
-    table = Table()
-    for heading in ("probability", "standard error"):
-        table.add_column(heading, justify="right", no_wrap=True)
-    table.add_row(f"{answer.value:.4f}", f"{answer.standard_error:.4f}")
+    """Return a probability and how it was found as a table."""
+    error = f"{answer.standard_error:.4f}" if answer.method == "draws" else "none"
+    rows = [(f"{answer.value:.4f}", error, answer.method)]
+    return _table(("probability", "standard error", "found by"), rows, caption=_dropped(answer.dropped))
+
+
+def ranking_table(answer: qsr.LandmarkRanking) -> Table:
+    """Return landmarks by what they tell as a table."""
+    rows = [
+        (
+            one.name,
+            f"{one.information:.3f} ± {one.standard_error:.3f}",
+            f"{one.through:.3f}",
+            f"{one.entropy:.2f}",
+            f"{one.ratio:.3f}",
+        )
+        for one in answer.landmarks
+    ]
+    headings = ("landmark", "information [bit]", "P(L|O)", "entropy [bit]", "P(L|O)/H")
+    return _table(headings, rows, caption=answer.basis)
+
+
+def scenes_table(answer: qsr.SceneSamples) -> Table:
+    """Return where things are in joint scenes as a table; the scenes themselves come as JSON."""
+    rows = [
+        (
+            name,
+            f"{share:.3f}",
+            *(f"{_metres(m)} ± {_metres(d)}" for m, d in zip(mean, deviation, strict=True)),
+        )
+        for name, share, mean, deviation in answer.summary()
+    ]
+    caption = f"{len(answer)} scenes of {answer.drawn} drawn; --format json gives each of them"
+    return _table(("thing", "in scenes", "x [m]", "y [m]"), rows, caption=caption)
+
+
+def _table(headings: tuple[str, ...], rows: Sequence[tuple[str, ...]], caption: str | None = None) -> Table:
+    table = Table(caption=caption and escape(caption), caption_justify="left")
+    for heading in headings:
+        table.add_column(escape(heading), justify="right", no_wrap=True)
+    for row in rows:
+        table.add_row(*map(escape, row))
     return table
+
+
+def _dropped(mass: float) -> str | None:
+    return f"combinations left out: {mass:.2g} of the mass" if mass > 0.0 else None
 
 
 def _print_where(answer: qsr.Where, console: Console, title: str) -> None:
@@ -76,7 +133,8 @@ def frame_line(answer: qsr.Where) -> str:
     else:
         frame = f"frame: {answer.frame} at the origin, x away from the viewer, y to its left (no landmark is used)"
     rest = f"; elsewhere: {answer.elsewhere:.3f}" if answer.elsewhere > 0.0 else ""
-    return f"{frame}{rest}"
+    left_out = _dropped(answer.dropped)
+    return f"{frame}{rest}" + (f"; {left_out}" if left_out else "")
 
 
 def _metres(value: float) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -92,3 +93,11 @@ class Where:
         rest = f", elsewhere {self.elsewhere:.3f}" if self.elsewhere > 0.0 else ""
         rest += f", dropped {self.dropped:.2g}" if self.dropped > 0.0 else ""
         return "\n".join([f"where {self.target}, frame: {self.frame}{rest}", *rows])
+
+
+def mixture_of(components: Sequence[Component]) -> GaussianMixture:
+    """Return components as a mixture, their weights normalised."""
+    shares = np.array([component.weight for component in components])
+    means = np.array([component.mean for component in components])
+    covariances = np.array([component.covariance for component in components])
+    return GaussianMixture(shares / shares.sum(), means, covariances)

@@ -11,10 +11,10 @@ from qsrlang.language.syntax import Atom
 from qsrlang.mixtures.conditional import PolarConditional, frame_of, hand
 from qsrlang.mixtures.conditionals import make_conditional
 from qsrlang.mixtures.cones import turning_cone_probability
-from qsrlang.mixtures.events import asked_step, share_inside
+from qsrlang.mixtures.events import share_inside
 from qsrlang.mixtures.layout import compact_anchor
 from qsrlang.mixtures.linear import cubature
-from qsrlang.mixtures.plans import Step, seats_read
+from qsrlang.mixtures.plans import Step, asked_step, seats_read
 from qsrlang.mixtures.sectors import Arcs, arcs_of
 from qsrlang.mixtures.solving import Solved
 from qsrlang.relations.calculus import Relation
@@ -31,7 +31,7 @@ def atom_probability(
     Where the one step that places the referent is about the same relatum, and nothing is fused, the share of its own
     density is exact; else that of the Gaussian of the pair, for relations of direction alone.
     """
-    step = asked_step(graph, solved.world, solved.plan, atom)
+    step = asked_step(graph, solved.world, solved.plan.seats, atom)
     if step is None:
         return 0.0, EXACT
     stated = None if solved.plan.fused else _stated(solved, step)

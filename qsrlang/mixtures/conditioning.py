@@ -12,11 +12,14 @@ import numpy as np
 from qsrlang.arrays import BoolArray, FloatArray
 from qsrlang.errors import ImpossibleConditionError
 from qsrlang.geometry.pose import Pose2
-from qsrlang.mixtures.conditions import Condition, objects_of
+from qsrlang.language.syntax import Atom
+from qsrlang.mixtures.conditions import Condition, assumed_atoms, objects_of
 from qsrlang.mixtures.draws import draw, width_of
 from qsrlang.mixtures.events import Outlook
-from qsrlang.mixtures.plans import plan_world
+from qsrlang.mixtures.gaussian import fitted
+from qsrlang.mixtures.plans import Plan, plan_worlds
 from qsrlang.mixtures.solving import log_mean, log_mean_of
+from qsrlang.mixtures.supports import Seat
 from qsrlang.mixtures.uniforms import REPLICATES, lattices
 from qsrlang.mixtures.wedges import conjuncts, tightest_first, wedges_of
 from qsrlang.mixtures.worlds import World, enumerate_worlds
@@ -42,19 +45,48 @@ class WorldDraws:
     outlook: Outlook
     weights: FloatArray
 
+    @property
+    def world(self) -> World:
+        """The alternatives that hold in it."""
+        return self.outlook.world
+
+    @property
+    def plan(self) -> Plan:
+        """How it places things."""
+        return self.outlook.plan
+
+    @property
+    def weight(self) -> float:
+        """The weight of its draws together."""
+        return float(self.weights.sum())
+
+    def place(self, seat: Seat) -> tuple[FloatArray, FloatArray]:
+        """Return mean (2,) and covariance (2, 2) of the draws of a thing."""
+        return fitted(self.outlook.drawn.points(seat), self.weights)
+
 
 def draw_scenes(
-    graph: RelationGraph, names: Sequence[str], conditions: Sequence[Condition], drawing: Drawing
-) -> tuple[WorldDraws, ...]:
-    """Return draws of every world of all objects named, weighted by shares, by evidence and by the conditions.
+    graph: RelationGraph,
+    names: Sequence[str],
+    conditions: Sequence[Condition],
+    drawing: Drawing,
+    asked: Sequence[Atom] = (),
+) -> tuple[tuple[WorldDraws, ...], float]:
+    """Return draws of every world of all objects named, weighted by shares, by evidence and by the conditions, and
+    the prior mass of the worlds left out.
 
     Worlds share the draws by their prior weight, each with MIN_DRAWS or more; there are MAX_DRAWN worlds at most.
     Evidence, the agreement of what is fused, weighs worlds only against those that place the same objects. Raises
     ImpossibleConditionError.
     """
     objects = tuple(dict.fromkeys([*names, *objects_of(*(one.formula for one in conditions))]))
-    worlds = [one for one in enumerate_worlds(graph, *objects, limit=MAX_DRAWN) if one.weight > 0.0]
-    drawn = [_drawn(graph, world, objects, conditions, drawing) for world in worlds]
+    likely = enumerate_worlds(graph, *objects, limit=MAX_DRAWN)
+    worlds = [one for one in likely if one.weight > 0.0]
+    asked = (*asked, *assumed_atoms(conditions))
+    plans = plan_worlds(graph, worlds, *objects, asked=asked)
+    drawn = [
+        _drawn(graph, world, plan, conditions, drawing) for world, plan in zip(worlds, plans, strict=True)
+    ]
     scales = _scales([outlook for outlook, _ in drawn], objects)
     found = []
     for outlook, factors in drawn:
@@ -64,7 +96,7 @@ def draw_scenes(
     total = sum(float(one.weights.sum()) for one in found)
     if not total > 0.0:
         raise ImpossibleConditionError([one.text for one in conditions], drawing.samples)
-    return tuple(WorldDraws(one.outlook, one.weights / total) for one in found)
+    return tuple(WorldDraws(one.outlook, one.weights / total) for one in found), likely.dropped
 
 
 def ratio_error(scenes: Iterable[WorldDraws], held: Iterable[BoolArray], ratio: float) -> float:
@@ -84,13 +116,13 @@ def effective_draws(scenes: Iterable[WorldDraws]) -> float:
 def _drawn(
     graph: RelationGraph,
     world: World,
-    objects: tuple[str, ...],
+    plan: Plan,
     conditions: Sequence[Condition],
     drawing: Drawing,
 ) -> tuple[Outlook, FloatArray]:
     """Return draws of a world, and the factor (P,) of each by the conditions that it was not drawn inside of."""
     parts = conjuncts(conditions)
-    plan = tightest_first(graph, world, plan_world(graph, world, *objects), parts)
+    plan = tightest_first(graph, world, plan, parts)
     wedges, rest = wedges_of(graph, world, plan, parts, drawing.viewer)
     count = max(MIN_DRAWS, round(drawing.samples * world.weight))
     uniforms = lattices(count, width_of(plan), drawing.rng)

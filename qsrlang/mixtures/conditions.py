@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from qsrlang.arrays import BoolArray, FloatArray
-from qsrlang.language.syntax import Formula, atoms_of
+from qsrlang.language.syntax import Atom, Formula, atoms_of
 from qsrlang.mixtures.chains import depends_on
 from qsrlang.relations.graph import RelationGraph
 
@@ -31,6 +31,11 @@ def objects_of(*formulas: Formula) -> tuple[str, ...]:
     """Return the names of the objects that formulas speak of."""
     names = (argument.text for one in formulas for atom in atoms_of(one) for argument in atom.arguments)
     return tuple(dict.fromkeys(names))
+
+
+def assumed_atoms(conditions: Iterable[Condition]) -> tuple[Atom, ...]:
+    """Return the atoms that conditions speak of."""
+    return tuple(atom for one in conditions for atom in atoms_of(one.formula))
 
 
 def conditions_on(graph: RelationGraph, names: Sequence[str], given: Formula | None) -> tuple[Condition, ...]:

@@ -13,14 +13,16 @@ from qsrlang.relations.graph import Alternative, Authority, Choice, Constraint, 
 
 MIN_SHARE = 1e-9
 
-Decision: TypeAlias = tuple[float, "Callable[[Draft], None]"]
+Outcome: TypeAlias = Landmark | Alternative | Choice | Constraint | str | None
+Decision: TypeAlias = tuple[float, "Callable[[Draft], None]", Outcome]
 
 
 @dataclass(slots=True)
 class Draft:
     """A world in the making: what is decided, what it weighs, and the names that are still to be visited.
 
-    `likeness` is the product of share / greatest share over the `depth` decisions made.
+    `likeness` is the product of share / greatest share over the `depth` decisions made. `decided` are their shares and
+    outcomes: a landmark, an alternative, a choice that leaves its referent elsewhere, a part of a constraint, a role.
     """
 
     pending: deque[str]
@@ -29,7 +31,8 @@ class Draft:
     depth: int = 0
     visited: set[str] = field(default_factory=set)
     covered: set[Pair] = field(default_factory=set)
-    decided: set[int] = field(default_factory=set)
+    closed: set[int] = field(default_factory=set)
+    decided: list[tuple[float, Outcome]] = field(default_factory=list)
     told: set[int] = field(default_factory=set)
     constraints: list[Constraint] = field(default_factory=list)
     relata: dict[str, tuple[str, ...]] = field(default_factory=dict)
@@ -52,9 +55,7 @@ class Draft:
                 return None
             if len(decisions) != 1:
                 return [self._after(decision, decisions) for decision in decisions]
-            ((share, act),) = decisions
-            self.weight *= share
-            act(self)
+            self._decide(decisions[0])
 
     def _next_decisions(self, graph: RelationGraph, in_parts: bool) -> Sequence[Decision] | None:
         while in_parts and self.whole:
@@ -80,7 +81,7 @@ class Draft:
             return _bindings(name, self._landmarks_of_role(graph, name))
         candidates = self._candidates(graph, name)
         if candidates:
-            return [(1.0 / len(candidates), _stand_in(name, one)) for one in candidates]
+            return [(1.0 / len(candidates), _stand_in(name, one), one) for one in candidates]
         choice = self._open_choice(graph, name)
         return None if choice is None else self._alternatives(graph, choice)
 
@@ -90,12 +91,12 @@ class Draft:
             if id(choice) in self.told or not self._tells(graph, name, choice):
                 continue
             if name not in self.visited:
-                return [(1.0, _visit((name,)))]
+                return [(1.0, _visit((name,)), None)]
             self.told.add(id(choice))
             self.seen.add(name)
             if any(pair[0] == name and pair not in self.covered for pair in choice.governs):
                 return self._alternatives(graph, choice)
-            return [(1.0, _visit(self.relata.get(name, ())))]
+            return [(1.0, _visit(self.relata.get(name, ())), None)]
         return None
 
     def _tells(self, graph: RelationGraph, name: str, choice: Choice) -> bool:
@@ -131,7 +132,7 @@ class Draft:
 
     def _open_choice(self, graph: RelationGraph, name: str) -> Choice | None:
         for choice in graph.choices_for(name):
-            if id(choice) not in self.decided and any(
+            if id(choice) not in self.closed and any(
                 pair[0] == name and pair not in self.covered for pair in choice.governs
             ):
                 return choice
@@ -140,8 +141,8 @@ class Draft:
     def _alternatives(self, graph: RelationGraph, choice: Choice) -> list[Decision]:
         alternatives = self._compatible(graph, choice)
         rest = 1.0 - sum(alternative.share for alternative in alternatives)
-        decisions: list[Decision] = [(rest, _elsewhere(choice))] if rest > MIN_SHARE else []
-        return [*decisions, *((one.share, _take(graph, choice, one)) for one in alternatives)]
+        decisions: list[Decision] = [(rest, _elsewhere(choice), choice)] if rest > MIN_SHARE else []
+        return [*decisions, *((one.share, _take(graph, choice, one), one) for one in alternatives)]
 
     def _compatible(self, graph: RelationGraph, choice: Choice) -> tuple[Alternative, ...]:
         """Return the alternatives; scenes that were already passed over for another are left out if any remain."""
@@ -166,16 +167,22 @@ class Draft:
         if referent in self.visited:
             self.pending += constraint.relata
 
+    def _decide(self, decision: Decision) -> None:
+        share, act, outcome = decision
+        self.weight *= share
+        if outcome is not None:
+            self.decided.append((share, outcome))
+        act(self)
+
     def _after(self, decision: Decision, among: Sequence[Decision]) -> Draft:
-        share, act = decision
         draft = replace(
             self,
             pending=self.pending.copy(),
-            weight=self.weight * share,
-            likeness=self.likeness * share / max(one for one, _ in among),
+            likeness=self.likeness * decision[0] / max(share for share, *_ in among),
             depth=self.depth + 1,
             visited=self.visited.copy(),
             covered=self.covered.copy(),
+            closed=self.closed.copy(),
             decided=self.decided.copy(),
             told=self.told.copy(),
             constraints=self.constraints.copy(),
@@ -186,7 +193,7 @@ class Draft:
             absent=self.absent.copy(),
             seen=self.seen.copy(),
         )
-        act(draft)
+        draft._decide(decision)
         return draft
 
 
@@ -204,7 +211,7 @@ def _bindings(name: str, instances: Iterable[tuple[float, Landmark | None]]) -> 
 
         return act
 
-    return [(share, bind(landmark)) for share, landmark in instances]
+    return [(share, bind(landmark), landmark) for share, landmark in instances]
 
 
 def _stand_in(name: str, candidate: str) -> Callable[[Draft], None]:
@@ -223,7 +230,7 @@ def _take(graph: RelationGraph, choice: Choice, alternative: Alternative) -> Cal
             if graph.pair_of(constraint) not in draft.covered:
                 draft.add(constraint)
         draft.covered.update(graph.pair_of(constraint) for constraint in alternative.constraints)
-        draft.decided.add(id(choice))
+        draft.closed.add(id(choice))
 
     return act
 
@@ -234,7 +241,7 @@ def _elsewhere(choice: Choice) -> Callable[[Draft], None]:
     def act(draft: Draft) -> None:
         draft.absent += sorted({referent for referent, _ in choice.governs} - draft.bindings.keys())
         draft.covered |= choice.governs
-        draft.decided.add(id(choice))
+        draft.closed.add(id(choice))
 
     return act
 
@@ -249,4 +256,6 @@ def _parts(at: int, constraints: Sequence[Constraint]) -> list[Decision]:
 
         return act
 
-    return [(1.0 / count, take(number)) for number in range(count)]
+    return [
+        (1.0 / count, take(number), replace(constraints[at], part=(number, count))) for number in range(count)
+    ]

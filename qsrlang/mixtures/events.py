@@ -20,12 +20,12 @@ from qsrlang.mixtures.conditional import Conditional, EitherConditional, PolarCo
 from qsrlang.mixtures.conditionals import make_conditional
 from qsrlang.mixtures.density import Rays
 from qsrlang.mixtures.draws import Drawn
-from qsrlang.mixtures.plans import Plan, Step, step_of
+from qsrlang.mixtures.plans import Plan, asked_step
 from qsrlang.mixtures.sectors import Arcs, arcs_of
 from qsrlang.mixtures.stance import Stance
 from qsrlang.mixtures.worlds import World
 from qsrlang.relations.calculus import Relation
-from qsrlang.relations.graph import AtomicRelation, Constraint, RelationGraph, Statement
+from qsrlang.relations.graph import RelationGraph
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,27 +51,13 @@ class Outlook:
                 return self._atom_holds(formula)
 
     def _atom_holds(self, atom: Atom) -> BoolArray:
-        step = asked_step(self.graph, self.world, self.plan, atom)
+        step = asked_step(self.graph, self.world, self.plan.seats, atom)
         if step is None:
             return np.zeros(len(self.drawn.logs), dtype=bool)
         conditional = make_conditional(self.graph, step, self.drawn.layout.anchor, self.viewer)
         points = self.drawn.points(step.referent)
         relation = self.graph.relations[atom.relation.text]
         return _inside(conditional, relation, self.graph.relations, points, self.drawn.states)
-
-
-def asked_step(graph: RelationGraph, world: World, plan: Plan, atom: Atom) -> Step | None:
-    """Return an atom as a step between things that a plan places; None where it does not place them all."""
-    names = [world.named(argument.text) for argument in atom.arguments]
-    if any(name not in plan.seats for name in names):
-        return None
-    referent, relatum, *towards = names
-    term = graph.relations[atom.relation.text].terms[0][1]
-    related = (AtomicRelation(term, atom.frame),)
-    said = Constraint(
-        referent, relatum, related, Statement.at(atom.span), None, towards[0] if towards else None
-    )
-    return step_of(graph, said, plan.seats)
 
 
 def share_inside(

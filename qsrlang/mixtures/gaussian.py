@@ -13,6 +13,7 @@ from qsrlang.errors import ValueRangeError
 from qsrlang.geometry.angles import rotation
 from qsrlang.geometry.pose import Pose2
 
+MIN_DEVIATION = 1e-3
 _QUADRATURE_ORDER = 24
 
 
@@ -90,3 +91,17 @@ class GaussianMixture:
         points = self.means[:, None] + grid @ np.linalg.cholesky(self.covariances).transpose(0, 2, 1)
         logs = self.logpdf(points.reshape(-1, 2)).reshape(len(self), -1)
         return float(-self.weights @ (logs @ grid_weights))
+
+
+def fitted(points: FloatArray, weights: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return mean (2,) and covariance (2, 2) of weighted draws (P, 2)."""
+    mean = np.asarray(weights @ points / weights.sum())
+    off = points - mean
+    return mean, definite(off.T @ (weights[:, None] * off) / weights.sum())
+
+
+def definite(covariance: FloatArray) -> FloatArray:
+    """Return a covariance (2, 2) that is: a landmark known to the millimetre has no spread, a Gaussian needs some."""
+    (a, b), (_, c) = covariance = 0.5 * (covariance + covariance.T)
+    is_definite = a + c > 0.0 and a * c - b * b > 0.0
+    return np.asarray(covariance if is_definite else covariance + MIN_DEVIATION**2 * np.eye(2))

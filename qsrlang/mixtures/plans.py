@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict, deque
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from qsrlang.language.syntax import Atom
 from qsrlang.mixtures.chains import needed_for
 from qsrlang.mixtures.layout import Layout
 from qsrlang.mixtures.supports import Seat, Support, in_region, stated_regions, support_of
 from qsrlang.mixtures.worlds import World
-from qsrlang.relations.graph import Constraint, Landmark, RelationGraph
+from qsrlang.relations.graph import AtomicRelation, Constraint, Landmark, RelationGraph, Statement
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,26 +71,31 @@ class _Pattern:
         return Plan(plan.landmarks, steps, plan.seats, used, plan.layout)
 
 
-def plan_world(graph: RelationGraph, world: World, *targets: str) -> Plan:
+def plan_world(graph: RelationGraph, world: World, *targets: str, asked: Sequence[Atom] = ()) -> Plan:
     """Return how a world places targets; those that no chain of it ties to a landmark have no seat."""
-    (plan,) = plan_worlds(graph, (world,), *targets)
+    (plan,) = plan_worlds(graph, (world,), *targets, asked=asked)
     return plan
 
 
-def plan_worlds(graph: RelationGraph, worlds: Iterable[World], *targets: str) -> tuple[Plan, ...]:
-    """Return how each world places targets; worlds whose constraints speak of the same pairs are planned once."""
+def plan_worlds(
+    graph: RelationGraph, worlds: Iterable[World], *targets: str, asked: Sequence[Atom] = ()
+) -> tuple[Plan, ...]:
+    """Return how each world places targets; worlds whose constraints speak of the same pairs are planned once.
+
+    What bounds the distances of the atoms that are `asked` about is among the landmarks.
+    """
     patterns: dict[object, _Pattern] = {}
     plans = []
     for world in worlds:
         pairs = tuple((one.referent, one.relatum, one.towards, in_region(one)) for one in world.constraints)
         key = (pairs, world.bindings, world.aliases, world.absent, world.seen)
         if key not in patterns:
-            patterns[key] = _pattern(graph, world, targets)
+            patterns[key] = _pattern(graph, world, targets, asked)
         plans.append(patterns[key].filled(world.constraints))
     return tuple(plans)
 
 
-def _pattern(graph: RelationGraph, world: World, targets: tuple[str, ...]) -> _Pattern:
+def _pattern(graph: RelationGraph, world: World, targets: tuple[str, ...], asked: Sequence[Atom]) -> _Pattern:
     helpful = _helpful(world, targets)
     seats = {name: Seat(landmark.name, landmark) for name, landmark in world.bindings}
     regions = stated_regions(helpful)
@@ -107,7 +113,8 @@ def _pattern(graph: RelationGraph, world: World, targets: tuple[str, ...]) -> _P
         bounds[constraint.referent] += [step.support.seat] if step.support else []
         steps.append(step)
     known = [landmark for _, landmark in world.bindings]
-    known += [step.support.seat.root for step in steps if step.support]
+    bounding = filter(None, (asked_step(graph, world, seats, atom) for atom in asked))
+    known += [step.support.seat.root for step in (*steps, *bounding) if step.support]
     landmarks = tuple({one.name: one for one in known}.values())
     layout = Layout.of(landmarks, [step.referent.block for step in steps if step.places])
     plan = Plan(landmarks, tuple(steps), seats, tuple(used), layout)
@@ -124,9 +131,16 @@ def seats_read(*steps: Step) -> tuple[Seat, ...]:
     return tuple(dict.fromkeys(read))
 
 
-def step_of(graph: RelationGraph, constraint: Constraint, seats: Mapping[str, Seat]) -> Step:
-    """Return a constraint between objects that sit already."""
-    return _step(graph, constraint, seats[constraint.referent], {}, seats, places=False)
+def asked_step(graph: RelationGraph, world: World, seats: Mapping[str, Seat], atom: Atom) -> Step | None:
+    """Return an atom as a step between things that have seats; None where one has none."""
+    names = [world.named(argument.text) for argument in atom.arguments]
+    if any(name not in seats for name in names):
+        return None
+    referent, relatum, *towards = names
+    related = (AtomicRelation(graph.relations[atom.relation.text].terms[0][1], atom.frame),)
+    second = towards[0] if towards else None
+    said = Constraint(referent, relatum, related, Statement.at(atom.span), None, second)
+    return _step(graph, said, seats[referent], {}, seats, places=False)
 
 
 @dataclass(slots=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
@@ -17,13 +17,15 @@ from qsrlang.language.diagnostics import Diagnostic, raise_errors
 from qsrlang.language.nodes.questions import MAX_SCENES
 from qsrlang.language.parser import parse_formula, parse_landmark, parse_query
 from qsrlang.language.source import Source
-from qsrlang.language.syntax import Formula, atoms_of
+from qsrlang.language.syntax import Atom, Formula, atoms_of
 from qsrlang.mixtures.answers import Where
-from qsrlang.mixtures.conditioning import Drawing
 from qsrlang.mixtures.conditions import conditions_on, objects_of
-from qsrlang.mixtures.inference import Bounds, in_frame, rooted, where_by_sampling, where_exactly
+from qsrlang.mixtures.explanation import Explanation, explain_probability, explain_where
+from qsrlang.mixtures.inference import Bounds, Placed, in_frame, place_assuming, rooted
+from qsrlang.mixtures.information import LandmarkRanking, rank_landmarks
+from qsrlang.mixtures.manner import Manner
 from qsrlang.mixtures.names import check_atom, check_object, check_question, drawn_names
-from qsrlang.mixtures.probability import Probability, probability, where_assuming
+from qsrlang.mixtures.probability import Probability, Proved, prove
 from qsrlang.mixtures.reduction import MAX_COMPONENTS
 from qsrlang.mixtures.scenes import SceneSamples, sample_scenes
 from qsrlang.mixtures.worlds import MAX_WORLDS
@@ -33,9 +35,8 @@ from qsrlang.relations.graph import Landmark, RelationGraph
 from qsrlang.relations.imports import find_knowledge, read_source
 from qsrlang.relations.values import landmark_value
 
-Answer: TypeAlias = Where | Probability
+Answer: TypeAlias = Where | Probability | Explanation | LandmarkRanking | SceneSamples
 Poses: TypeAlias = Mapping[str, Pose2 | Sequence[Pose2]]
-ENGINES = ("exact", "sampling")
 DEFAULT_SAMPLES = 10_000
 
 
@@ -110,18 +111,9 @@ class KnowledgeBase:
         alternatives are weighed, and reduced to `max_components`. Raises UnreachedTargetError, NoRoomError,
         MissingFacingError and ImpossibleConditionError.
         """
-        for name in filter(None, (target, wrt)):
-            check_object(name, self.graph)
-        for what, bound in (("components", max_components), ("worlds", max_worlds)):
-            if bound < 1:
-                raise ValueRangeError(f"the greatest number of {what}", bound, "at least 1")
-        solve = _engine(engine, samples, rng, Bounds(max_worlds, max_components))
+        how = Manner(engine, samples, rng, viewer, Bounds(max_worlds, max_components))
         graph = self.with_landmarks(*_instances(landmarks or {}, self.graph)).graph
-        conditions = conditions_on(graph, (target,), self._formula(given))
-        if not conditions:
-            return in_frame(graph, target, wrt, lambda known: solve(known, target, viewer))
-        drawing = Drawing(samples, rng or np.random.default_rng(0), viewer)
-        return in_frame(graph, target, wrt, lambda known: where_assuming(known, target, conditions, drawing))
+        return self._placed(graph, target, wrt, given, how).answer
 
     def prob(
         self,
@@ -132,18 +124,47 @@ class KnowledgeBase:
         samples: int = DEFAULT_SAMPLES,
         rng: np.random.Generator | None = None,
     ) -> Probability:
-        """Return how probable a formula such as `right-of(Cup, Keyboard)` is, with its standard error.
+        """Return how probable a formula such as `right-of(Cup, Keyboard)` is.
 
-        It is the share of `samples` weighted draws (of `rng`, or of a generator with seed 0) in which the formula
-        holds, among those in which what is `given` and required does. Raises UnreachedTargetError where no landmark
-        is known and the objects hang on different classes, NoRoomError, MissingFacingError, ImpossibleConditionError.
+        Of one atom, or its negation, with nothing assumed, the share of the stated densities, or that of the Gaussians
+        of the worlds. Else it is the share of `samples` weighted draws (of `rng`, or of a generator with seed 0) in
+        which the formula holds, among those in which what is `given` and required does, with its standard error.
+        Raises UnreachedTargetError where no landmark is known and the objects hang on different classes,
+        NoRoomError, MissingFacingError, ImpossibleConditionError.
         """
-        wanted, assumed = self._formula(formula), self._formula(given)
-        if samples < 2:
-            raise ValueRangeError("the number of samples", samples, "at least 2")
-        graph = rooted(self.graph, objects_of(wanted, *([assumed] if assumed else [])))
-        drawing = Drawing(samples, rng or np.random.default_rng(0), viewer)
-        return probability(graph, wanted, assumed, drawing)
+        how = Manner("exact", samples, rng, viewer, Bounds())
+        return self._proved(self._formula(formula), given, how).answer
+
+    def explain(
+        self,
+        subject: str | Formula,
+        *,
+        wrt: str | None = None,
+        given: str | Formula | None = None,
+        viewer: Pose2 | None = None,
+        samples: int = DEFAULT_SAMPLES,
+        rng: np.random.Generator | None = None,
+    ) -> Explanation:
+        """Return why a target such as `Cup` is where it is, or why a formula is as probable as it is.
+
+        Its numbers are those of `where` and `prob`, world by world, with the statements behind each decision. Raises
+        what those raise.
+        """
+        how = Manner("exact", samples, rng, viewer, Bounds())
+        if isinstance(subject, str) and "(" not in subject:
+            return explain_where(self._placed(self.graph, subject, wrt, given, how), subject)
+        return explain_probability(self._proved(self._formula(subject), given, how))
+
+    def rank_landmarks(
+        self, target: str, *, viewer: Pose2 | None = None, rng: np.random.Generator | None = None
+    ) -> LandmarkRanking:
+        """Return what a target is placed by, ranked by how much knowing the place of each narrows the search for it.
+
+        By mutual information, from draws of `rng` (or of a generator with seed 0). Raises UnreachedTargetError,
+        NoRoomError and MissingFacingError.
+        """
+        check_object(target, self.graph)
+        return rank_landmarks(self.graph, target, viewer, rng or np.random.default_rng(0))
 
     def sample(
         self,
@@ -194,8 +215,38 @@ class KnowledgeBase:
                 )
             case questions.Prob(formula=formula):
                 return known.prob(formula, given, viewer=viewer, samples=samples, rng=rng)
+            case questions.Explain(subject=subject, relatum=relatum):
+                wrt = relatum.text if relatum else None
+                about = subject if isinstance(subject, Atom) else subject.text
+                return known.explain(about, wrt=wrt, given=given, viewer=viewer, samples=samples, rng=rng)
+            case questions.Landmarks(target=target):
+                return known.rank_landmarks(target.text, viewer=viewer, rng=rng)
+            case questions.Sample(subject=subject, count=count):
+                name = subject.text if subject else None
+                return known.sample(name, count, given=given, viewer=viewer, rng=rng)
             case _:
                 raise UnansweredQueryError(type(question).__name__.lower())
+
+    def _placed(
+        self, graph: RelationGraph, target: str, wrt: str | None, given: str | Formula | None, how: Manner
+    ) -> Placed:
+        for name in filter(None, (target, wrt)):
+            check_object(name, self.graph)
+        conditions = conditions_on(graph, (target,), self._formula(given))
+        if conditions:
+            drawing = how.drawing()
+            return in_frame(
+                graph,
+                target,
+                wrt,
+                lambda known: place_assuming(known, target, conditions, drawing, how.bounds),
+            )
+        return in_frame(graph, target, wrt, lambda known: how.place(known, target))
+
+    def _proved(self, formula: Formula, given: str | Formula | None, how: Manner) -> Proved:
+        assumed = self._formula(given)
+        graph = rooted(self.graph, objects_of(formula, *([assumed] if assumed else [])))
+        return prove(graph, formula, assumed, how.drawing(), how.bounds.worlds)
 
     @overload
     def _formula(self, formula: str | Formula) -> Formula: ...
@@ -239,20 +290,6 @@ def _refined(circumstances: Circumstances, asked: Circumstances) -> Circumstance
 @lru_cache(maxsize=256)
 def _parsed(formula: str) -> Formula:
     return parse_formula(formula)
-
-
-def _engine(
-    name: str, samples: int, rng: np.random.Generator | None, bounds: Bounds
-) -> Callable[[RelationGraph, str, Pose2 | None], Where]:
-    if name not in ENGINES:
-        raise UnknownNameError("engine", name, ENGINES)
-    if name == "exact":
-        return lambda graph, target, viewer: where_exactly(graph, target, viewer, bounds)
-    if rng is None or samples < 2:
-        raise ValueRangeError(
-            "the sampling engine's rng and samples", (rng, samples), "a generator and at least 2"
-        )
-    return lambda graph, target, viewer: where_by_sampling(graph, target, viewer, samples, rng)
 
 
 def _instances(poses: Poses, graph: RelationGraph) -> Iterator[Landmark]:

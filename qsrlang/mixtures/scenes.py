@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +13,7 @@ from qsrlang.errors import ImpossibleConditionError
 from qsrlang.geometry.pose import Pose2
 from qsrlang.mixtures.collisions import Body, collide, pairs_apart
 from qsrlang.mixtures.conditioning import MAX_DRAWN, factors_of
-from qsrlang.mixtures.conditions import Condition, objects_of
+from qsrlang.mixtures.conditions import Condition, assumed_atoms, objects_of
 from qsrlang.mixtures.draws import Drawn, draw, width_of
 from qsrlang.mixtures.events import Outlook
 from qsrlang.mixtures.plans import Plan, plan_worlds
@@ -33,15 +33,16 @@ MAX_DRAWS_PER_SCENE = 20_000
 class SceneSamples:
     """Joint scenes: where each of N things is in each of S scenes.
 
-    `positions` (S, N, 2) [m] and `headings` (S, N) [rad] in the map frame, not a number for what is elsewhere; `draws`
+    `positions` (S, N, 2) [m] and `headings` (S, N) [rad] in the map frame, not a number for what is elsewhere; `drawn`
     is how many scenes were drawn to find them, for those that collide or break a requirement are drawn again.
     """
 
     names: tuple[str, ...]
     positions: FloatArray
     headings: FloatArray
-    draws: int
+    drawn: int
     assumed: tuple[str, ...] = ()
+    draws: None = None
 
     def __len__(self) -> int:
         return len(self.positions)
@@ -56,20 +57,20 @@ class SceneSamples:
             }
             for scene in poses
         ]
-        return {"scenes": scenes, "draws": self.draws, "assumed": list(self.assumed)}
+        return {"scenes": scenes, "drawn": self.drawn, "assumed": list(self.assumed)}
+
+    def summary(self) -> Iterator[tuple[str, float, FloatArray, FloatArray]]:
+        """Yield, of each thing, in which share of the scenes it is, and mean and deviation (2,) of where [m]."""
+        for at, name in enumerate(self.names):
+            there = self.positions[np.isfinite(self.positions[:, at, 0]), at]
+            spread = (there.mean(axis=0), there.std(axis=0)) if len(there) else (np.full(2, np.nan),) * 2
+            yield name, len(there) / len(self), *spread
 
     def __str__(self) -> str:
-        with np.errstate(invalid="ignore"):
-            placed = np.isfinite(self.positions[..., 0])
-        rows = [f"{len(self)} scenes of {len(self.names)} things, {self.draws} drawn, frame: map"]
-        for at, name in enumerate(self.names):
-            there = self.positions[placed[:, at], at]
-            if len(there) == 0:
-                rows.append(f"{name:>16}  in no scene")
-                continue
-            (x, y), (dx, dy) = there.mean(axis=0), there.std(axis=0)
-            share = f", in {placed[:, at].mean():.1%} of them" if not placed[:, at].all() else ""
-            rows.append(f"{name:>16}  x {x:.3f} ± {dx:.3f}, y {y:.3f} ± {dy:.3f} m{share}")
+        rows = [f"{len(self)} scenes of {len(self.names)} things, {self.drawn} drawn, frame: map"]
+        for name, share, (x, y), (dx, dy) in self.summary():
+            rest = f", in {share:.1%} of them" if share < 1.0 else ""
+            rows.append(f"{name:>16}  x {x:.3f} ± {dx:.3f}, y {y:.3f} ± {dy:.3f} m{rest}")
         return "\n".join(rows)
 
 
@@ -176,7 +177,8 @@ def _sources(
     worlds = [one for one in enumerate_worlds(graph, *objects, limit=MAX_DRAWN) if one.weight > 0.0]
     parts = conjuncts(conditions)
     sources = []
-    for world, plan in zip(worlds, plan_worlds(graph, worlds, *objects), strict=True):
+    plans = plan_worlds(graph, worlds, *objects, asked=assumed_atoms(conditions))
+    for world, plan in zip(worlds, plans, strict=True):
         ordered = tightest_first(graph, world, plan, parts)
         wedges, rest = wedges_of(graph, world, ordered, parts, viewer)
         sources.append(_Source(graph, world, ordered, wedges, rest, pairs_apart(graph, plan), viewer))

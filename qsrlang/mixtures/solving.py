@@ -11,8 +11,11 @@ import numpy as np
 
 from qsrlang.arrays import FloatArray
 from qsrlang.geometry.pose import Pose2
+from qsrlang.language.syntax import Atom
+from qsrlang.mixtures.gaussian import definite
 from qsrlang.mixtures.plans import Plan, plan_worlds
 from qsrlang.mixtures.posterior import Posterior, posteriors_of
+from qsrlang.mixtures.supports import Seat
 from qsrlang.mixtures.worlds import MAX_WORLDS, World, enumerate_worlds
 from qsrlang.relations.graph import RelationGraph
 
@@ -26,9 +29,10 @@ class Solved:
     posterior: Posterior
     weight: float
 
-    def places(self, name: str) -> bool:
-        """Return whether the world places what a name stands for."""
-        return self.world.named(name) in self.plan.seats
+    def place(self, seat: Seat) -> tuple[FloatArray, FloatArray]:
+        """Return mean (2,) and covariance (2, 2) of a thing that it places."""
+        mean, covariance = self.posterior.marginal(seat)
+        return mean, definite(covariance)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -40,12 +44,19 @@ class Solution:
 
 
 def solve_worlds(
-    graph: RelationGraph, names: Sequence[str], viewer: Pose2 | None, limit: int = MAX_WORLDS
+    graph: RelationGraph,
+    names: Sequence[str],
+    viewer: Pose2 | None,
+    limit: int = MAX_WORLDS,
+    asked: Sequence[Atom] = (),
 ) -> Solution:
-    """Return the worlds of all objects named, solved; relations of several components split them further."""
+    """Return the worlds of all objects named, solved; relations of several components split them further.
+
+    Their plans have the landmarks that bound the atoms `asked` about.
+    """
     found = enumerate_worlds(graph, *names, limit=limit, in_parts=True)
     worlds = [world for world in found if world.weight > 0.0]
-    plans = list(zip(worlds, plan_worlds(graph, worlds, *names), strict=True))
+    plans = list(zip(worlds, plan_worlds(graph, worlds, *names, asked=asked), strict=True))
     posteriors = posteriors_of(graph, [plan for _, plan in plans], viewer)
     placed = [frozenset(name for name in names if world.named(name) in plan.seats) for world, plan in plans]
     logs = [one.log_evidence for one in posteriors]

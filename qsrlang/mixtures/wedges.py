@@ -12,8 +12,7 @@ from qsrlang.geometry.pose import Pose2
 from qsrlang.language.syntax import And, Atom
 from qsrlang.mixtures.conditional import frame_of, hand
 from qsrlang.mixtures.conditions import Condition
-from qsrlang.mixtures.events import asked_step
-from qsrlang.mixtures.plans import Plan, Step, seats_read
+from qsrlang.mixtures.plans import Plan, Step, asked_step, seats_read
 from qsrlang.mixtures.sectors import arcs_of
 from qsrlang.mixtures.supports import in_region
 from qsrlang.mixtures.wedge import Wedge
@@ -34,7 +33,7 @@ def tightest_first(graph: RelationGraph, world: World, plan: Plan, conditions: S
     """Return a plan in the order in which each thing has the most conditions with what is placed before it."""
     links: dict[str, set[str]] = defaultdict(set)
     for one in conditions:
-        step = asked_step(graph, world, plan, one.formula) if isinstance(one.formula, Atom) else None
+        step = asked_step(graph, world, plan.seats, one.formula) if isinstance(one.formula, Atom) else None
         if step is not None:
             links[step.referent.block].add(step.relatum.block)
             links[step.relatum.block].add(step.referent.block)
@@ -83,7 +82,7 @@ def _wedge(
 ) -> tuple[str, Wedge] | None:
     if not isinstance(condition.formula, Atom) or condition.share is not None:
         return None
-    step = asked_step(graph, world, plan, condition.formula)
+    step = asked_step(graph, world, plan.seats, condition.formula)
     aimed = None if step is None else _aim(graph, plan, step, condition.formula, viewer)
     if step is None or aimed is None:
         return None

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from heapq import heappop, heappush
 from itertools import count
 
-from qsrlang.mixtures.drafts import Draft
+from qsrlang.mixtures.drafts import Draft, Outcome
 from qsrlang.relations.graph import Constraint, Landmark, RelationGraph
 
 MAX_WORLDS = 10_000
@@ -23,7 +23,7 @@ class World:
 
     `aliases` name, for a class whose any instance will do, the role it is here; constraints name the role already.
     `absent` are the objects that are elsewhere: shares below 1 leave the rest to that. `seen` are the objects whose
-    places are known and tell of others.
+    places are known and tell of others. `decided` are the shares, whose product is the weight, and what was decided.
     """
 
     weight: float
@@ -32,6 +32,7 @@ class World:
     aliases: tuple[tuple[str, str], ...] = ()
     absent: tuple[str, ...] = ()
     seen: tuple[str, ...] = ()
+    decided: tuple[tuple[float, Outcome], ...] = ()
 
     def named(self, name: str) -> str:
         """Return what a name stands for: for a class perhaps one of its roles."""
@@ -88,6 +89,7 @@ def _world(draft: Draft) -> World:
         tuple(names.items()),
         tuple(draft.absent),
         tuple(sorted(draft.seen)),
+        tuple(draft.decided),
     )
 
 
