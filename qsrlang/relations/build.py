@@ -12,6 +12,7 @@ from qsrlang.language.parser import MAX_FINDINGS
 from qsrlang.language.silencing import unsilenced
 from qsrlang.language.source import Source
 from qsrlang.relations.anchoring import report_unanchored
+from qsrlang.relations.consistency.reporting import contradictions
 from qsrlang.relations.contexts import Circumstances
 from qsrlang.relations.graph import RelationGraph
 from qsrlang.relations.imports import NOTHING_OPENED, Library, read_library
@@ -52,6 +53,7 @@ def build_graph(
     layers = build_layers(statements, symbols)
     report_unanchored(symbols)
     graph = _graph(layers, symbols, circumstances or ANYWHERE)
+    symbols.diagnostics += contradictions(graph, symbols.diagnostics)
     found = unsilenced((*library.diagnostics, *symbols.diagnostics))
     return Built(graph, _ordered(found, source), library, symbols, layers)
 

@@ -9,8 +9,10 @@ from hypothesis import strategies as st
 import qsrlang as qsr
 from qsrlang.language.source import Source
 from qsrlang.language.syntax import And
-from qsrlang.relations.algebra import compose, conflict, converse, neighbours
+from qsrlang.relations.algebra import compose, converse, neighbours
 from qsrlang.relations.build import build_graph
+from qsrlang.relations.consistency.claims import facts_of
+from qsrlang.relations.consistency.orders import contradiction
 from qsrlang.relations.qualify import DIRECTIONS, TPCC, UNDEFINED, direction_of, qualify
 
 AXES = {"behind-of": 0, "left-of": 1, "in-front-of": 2, "right-of": 3}
@@ -23,6 +25,11 @@ FIGURE_2 = (
 def relation_of(offset):
     """The quarter in which an offset lies, away from the diagonals."""
     return DIRECTIONS[round(math.atan2(offset[1], offset[0]) / (math.pi / 2)) % 4]
+
+
+def conflict(atoms, relations):
+    """The atoms of a shortest contradiction."""
+    return tuple(fact.atom for fact in contradiction(facts_of(atoms, relations)))
 
 
 def relations():

@@ -1,0 +1,77 @@
+"""Conflicts as findings about a text."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+
+from qsrlang.language.diagnostics import Diagnostic, Label, Severity
+from qsrlang.language.source import Span
+from qsrlang.relations.calculus import Relation
+from qsrlang.relations.consistency.claims import Claim, Fact, claims_of
+from qsrlang.relations.consistency.conflicts import Conflict, Relaxation
+from qsrlang.relations.consistency.finding import Examination
+from qsrlang.relations.consistency.relaxing import relaxations
+from qsrlang.relations.consistency.searching import only
+from qsrlang.relations.graph import RelationGraph
+
+CODE = "Q515"
+
+
+def contradicting(
+    facts: Sequence[Fact], claims: Sequence[Claim], relations: Mapping[str, Relation]
+) -> Diagnostic:
+    """Return the finding that facts, among claims that have no other conflict, contradict each other."""
+    atoms = sorted({fact.mention: fact.atom for fact in facts}.items())
+    found = relaxations(facts, claims, relations, None)
+    return _finding(Conflict(tuple(atom for _, atom in atoms), (), found))
+
+
+def contradictions(
+    graph: RelationGraph, known: Iterable[Diagnostic], concerns: Callable[[Span], bool] = lambda span: True
+) -> Iterator[Diagnostic]:
+    """Yield a finding for each conflict of directions and exclusions in a graph that is not known yet.
+
+    Of those, only the ones with an atom at a place that it `concerns`.
+    """
+    told = {_mention(place) for one in known if one.code == CODE for place in _places(one)}
+    claims = claims_of(graph)
+    mentions = {fact.mention for claim in claims for fact in claim.facts}
+    fresh = tuple(only(mentions - told, claims)) if told else claims
+    for conflict in Examination(fresh, graph.relations).conflicts()[0]:
+        if any(concerns(atom.span) for atom in conflict.atoms):
+            yield _finding(conflict)
+
+
+def _finding(conflict: Conflict) -> Diagnostic:
+    first, *others = conflict.atoms
+    labels = tuple(Label(atom.span, "nor this one, together") for atom in others)
+    edits = conflict.relaxations[0].edits if conflict.relaxations else ()
+    return Diagnostic(
+        CODE,
+        conflict.title,
+        first.span,
+        "this one cannot hold",
+        _help(conflict.relaxations),
+        labels,
+        Severity.WARNING,
+        edits,
+        sure=False,
+    )
+
+
+def _help(relaxations: Sequence[Relaxation]) -> str:
+    each = "each could hold without one of the others"
+    if not relaxations or relaxations[0].steps is None:
+        return f"{each}; remove one of them"
+    first, *others = (one.short for one in relaxations)
+    also = f" (or {', or '.join(others)})" if others else ""
+    return f"{each}; the least change: {first}{also}"
+
+
+def _places(finding: Diagnostic) -> Iterator[Span]:
+    yield finding.span
+    yield from (label.span for label in finding.labels)
+
+
+def _mention(span: Span) -> tuple[str, int, int]:
+    return span.source.name, span.start, span.end
