@@ -349,3 +349,40 @@ def test_conceptual_neighbours_of_the_built_in_relations():
     assert conceptual_neighbours(relations["left-of"]) == ("behind-of", "in-front-of")
     assert conceptual_neighbours(relations["close-to"]) == ("distant-from",)
     assert conceptual_neighbours(relations["on"]) == ()
+
+
+# As findings
+
+
+def told(text):
+    return [one for one in qsr.check_text(text) if one.code == "Q515"]
+
+
+def test_a_contradiction_across_statements_is_a_finding_with_places_and_an_edit_that_ends_it():
+    text = FIGURE_2 + "observe left-of(Bottle, Laptop)."
+    (finding,) = told(text)
+    places = [finding.span, *(label.span for label in finding.labels)]
+    assert [place.line for place in places] == [5, 6, 7, 9]
+    assert "the least change: 'behind-of(Bottle, Laptop)' in place of 'left-of'" in finding.help
+    assert not finding.sure
+    assert told(edited(text, finding.edits)) == []
+
+
+def test_a_formula_that_contradicts_itself_is_told_once_and_others_besides():
+    text = CLASSES + "observe left-of(A, B) ∧ right-of(A, B).\nobserve left-of(C, D).\nrequire left-of(D, C)."
+    assert [one.span.line for one in told(text)] == [2, 3]
+
+
+def test_what_contradicts_itself_in_a_context_alone_is_told_there():
+    text = CLASSES + "observe left-of(A, B).\nin room lab, from 08:00 to 10:00 {{ {} }}"
+    (finding,) = told(text.format("require right-of(A, B)."))
+    assert [finding.span.line, *(label.span.line for label in finding.labels)] == [2, 3]
+    assert told(text.format("believe right-of(A, B). require right-of(A, B).")) == []
+    assert told(text.format("observe left-of(C, D).")) == []
+    two_rooms = "in room a { require left-of(A, B). }\nin room b { require left-of(B, A). }"
+    assert told(CLASSES + two_rooms) == []
+
+
+def test_a_comment_silences_a_contradiction():
+    text = CLASSES + "observe left-of(A, B). # allow Q515\nrequire left-of(B, A)."
+    assert told(text) == []

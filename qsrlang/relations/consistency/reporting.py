@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from qsrlang.language.diagnostics import Diagnostic, Label, Severity
 from qsrlang.language.source import Span
@@ -27,18 +27,18 @@ def contradicting(
 
 
 def contradictions(
-    graph: RelationGraph, known: Iterable[Diagnostic], concerns: Callable[[Span], bool] = lambda span: True
+    graph: RelationGraph, known: Iterable[Diagnostic], within: Span | None = None
 ) -> Iterator[Diagnostic]:
     """Yield a finding for each conflict of directions and exclusions in a graph that is not known yet.
 
-    Of those, only the ones with an atom at a place that it `concerns`.
+    Of those, only the ones with an atom `within` a place if that is given.
     """
     told = {_mention(place) for one in known if one.code == CODE for place in _places(one)}
     claims = claims_of(graph)
     mentions = {fact.mention for claim in claims for fact in claim.facts}
     fresh = tuple(only(mentions - told, claims)) if told else claims
     for conflict in Examination(fresh, graph.relations).conflicts()[0]:
-        if any(concerns(atom.span) for atom in conflict.atoms):
+        if within is None or any(_lies_in(atom.span, within) for atom in conflict.atoms):
             yield _finding(conflict)
 
 
@@ -75,3 +75,7 @@ def _places(finding: Diagnostic) -> Iterator[Span]:
 
 def _mention(span: Span) -> tuple[str, int, int]:
     return span.source.name, span.start, span.end
+
+
+def _lies_in(span: Span, other: Span) -> bool:
+    return span.source is other.source and other.start <= span.start and span.end <= other.end
