@@ -1,24 +1,19 @@
-"""Rules about formulas: atoms that others imply, frames that are ambiguous, disjunctions where a belief was meant."""
+"""Rules about formulas: atoms that others imply, disjunctions where a belief was meant."""
 
 from __future__ import annotations
 
-import math
 import re
-from collections import defaultdict
 from collections.abc import Iterator
 
 from qsrlang.language.diagnostics import Diagnostic, Edit, Label
 from qsrlang.language.printing.printer import print_formula
 from qsrlang.language.source import Span
 from qsrlang.language.statements import Believe, Observe, Require, Statement
-from qsrlang.language.syntax import And, Atom, Formula, Frame, Normal, Not, Or, Uniform, atoms_of
+from qsrlang.language.syntax import And, Atom, Formula, Frame, Not, Or, atoms_of
 from qsrlang.relations.calculus import Relation
 from qsrlang.relations.linting.linted import Linted, warning, without_comments
 
-TURN = 2.0 * math.pi
 _CONNECTIVE = re.compile(r"\s*(?:∧|&|and)\s*")
-_DECIMALS = 9
-_SLACK = 1e-9
 
 
 def implied_atoms(linted: Linted) -> Iterator[Diagnostic]:
@@ -71,63 +66,6 @@ def _without(conjunction: And, number: int) -> tuple[Edit, ...]:
     place = Span(part.span.source, before.span.end, part.span.end)
     between = place.source.text[before.span.end : part.span.start]
     return without_comments(Edit(place, "")) if _CONNECTIVE.fullmatch(between) else ()
-
-
-def ambiguous_frames(linted: Linted) -> Iterator[Diagnostic]:
-    """Atoms without `wrt` that mean something else by the front of their relatum than as seen by a viewer."""
-    for _, formula in linted.formulas():
-        for atom in atoms_of(formula):
-            kind = _kind_with_a_front(atom, linted)
-            if kind is not None:
-                yield _ambiguous(atom, kind, linted)
-
-
-def _kind_with_a_front(atom: Atom, linted: Linted) -> str | None:
-    """Return the class of the relatum where its front makes the atom ambiguous."""
-    symbols = linted.symbols
-    relation = symbols.relations.get(atom.relation.text)
-    if atom.framed or relation is None or not len(atom.arguments) == relation.arity == 2:
-        return None
-    relatum = atom.arguments[1].text
-    kind = symbols.classes.get(symbols.class_of(symbols.roles.get(relatum, relatum)))
-    return kind.name if kind and kind.front and not _is_mirrored(relation) else None
-
-
-def _ambiguous(atom: Atom, kind: str, linted: Linted) -> Diagnostic:
-    declared = linted.symbols.places.get(("class", kind))
-    labels = (Label(declared.span, "declared here with its front"),) if declared else ()
-    return warning(
-        "Q507",
-        f"'{atom.relation}' is ambiguous, for '{kind}' has a front",
-        atom.span,
-        "without 'wrt' it is as the viewer sees it",
-        f"write 'wrt relative' for that, or 'wrt intrinsic' for the {kind}'s own side",
-        labels=labels,
-        edits=(Edit(Span(linted.source, atom.span.end, atom.span.end), " wrt relative"),),
-    )
-
-
-def _is_mirrored(relation: Relation) -> bool:
-    """Whether a relation means the same with left and right swapped."""
-    shares: dict[tuple[float, float], float] = defaultdict(float)
-    mirrored: dict[tuple[float, float], float] = defaultdict(float)
-    for share, term in relation.terms:
-        match term.angle:
-            case Normal(mean=mean, deviation=deviation):
-                shares[_turned(mean.value), deviation.value] += share
-                mirrored[_turned(-mean.value), deviation.value] += share
-            case Uniform(low=low, high=high) if high.value - low.value < TURN:
-                middle, width = (low.value + high.value) / 2.0, high.value - low.value
-                shares[_turned(middle), width] += share
-                mirrored[_turned(-middle), width] += share
-    return shares.keys() == mirrored.keys() and all(
-        abs(shares[key] - mirrored[key]) < _SLACK for key in shares
-    )
-
-
-def _turned(angle: float) -> float:
-    """Return an angle within one turn, rounded so that equal angles are equal."""
-    return round(round(angle / TURN, _DECIMALS) % 1.0, _DECIMALS)
 
 
 def disjunctions(linted: Linted) -> Iterator[Diagnostic]:
