@@ -11,6 +11,7 @@ from rich.table import Table
 
 from qsrlang.cli.findings import findings_json, print_findings
 from qsrlang.cli.options import Format, Landmarks, OutputFormat, Viewer
+from qsrlang.errors import UnknownNameError
 from qsrlang.language.codes import CODES
 from qsrlang.language.diagnostics import Diagnostic, Severity
 from qsrlang.language.parser import parse_landmark, parse_place
@@ -59,6 +60,9 @@ def _findings(file: str, viewer: str | None, landmarks: list[str]) -> list[Diagn
     source = read_source(find_knowledge(file))
     built = build_graph(source)
     further = tuple(landmark_value(parse_landmark(one)) for one in landmarks)
+    for one in further:
+        if one.kind not in built.graph.classes:
+            raise UnknownNameError("class", one.kind, built.graph.classes)
     place = None if viewer is None else parse_place(viewer)
     found = [*built.diagnostics, *find_doubtful(built, source, place, further)]
     return sorted(found, key=lambda finding: (finding.span.source is not source, finding.span.start))

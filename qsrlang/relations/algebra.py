@@ -71,6 +71,41 @@ def entailed(atoms: Iterable[Formula | str], a: str, c: str, frame: Frame = Fram
     return frozenset(_NAMES[u, w] for u in us for w in ws)
 
 
+def derivation(atoms: Iterable[Atom], goal: Atom) -> tuple[Atom, ...]:
+    """Return few of the atoms in a goal's frame from which it follows, in the order given; none where it does not.
+
+    A direction follows where a chain of others leads from its relatum to its referent in each of the two orders.
+    """
+    given = [one for one in atoms if one.frame is goal.frame and one.relation.text in _SIGNS]
+    if goal.relation.text not in _SIGNS or goal.frame is Frame.INTRINSIC:
+        return ()
+    ways = [_way(given, goal, axis) for axis in (0, 1)]
+    used = {id(atom) for way in ways for atom in way}
+    return tuple(atom for atom in given if id(atom) in used) if all(ways) else ()
+
+
+def _way(atoms: Iterable[Atom], goal: Atom, axis: int) -> tuple[Atom, ...]:
+    """Return the atoms along a shortest way from the lower to the higher object of a goal in one order."""
+    after: dict[str, list[tuple[str, Atom]]] = defaultdict(list)
+    for atom in atoms:
+        low, high = _low_and_high(atom, axis)
+        after[low].append((high, atom))
+    start, end = _low_and_high(goal, axis)
+    ways: dict[str, tuple[Atom, ...]] = {start: ()}
+    waiting = [start]
+    for name in waiting:
+        for high, atom in after.get(name, ()):
+            if high not in ways:
+                ways[high] = (*ways[name], atom)
+                waiting.append(high)
+    return ways.get(end, ())
+
+
+def _low_and_high(atom: Atom, axis: int) -> tuple[str, str]:
+    referent, relatum = (argument.text for argument in atom.arguments)
+    return (relatum, referent) if _SIGNS[atom.relation.text][axis] > 0 else (referent, relatum)
+
+
 def _conjoined(formula: Formula | str) -> Iterator[Atom]:
     """Yield the atoms that hold if a formula does; disjunctions and negations say nothing here."""
     match formula:
@@ -87,8 +122,7 @@ def _order(atoms: Iterable[Atom], axis: int) -> Mapping[str, set[str]]:
     """Return the names that each comes after, in one of the two orders."""
     before: dict[str, set[str]] = defaultdict(set)
     for atom in atoms:
-        names = [argument.text for argument in atom.arguments]
-        high, low = names if _SIGNS[atom.relation.text][axis] > 0 else names[::-1]
+        low, high = _low_and_high(atom, axis)
         before[high].add(low)
     return before
 

@@ -82,9 +82,9 @@ def _shares(
 
 def _contact(halves: FloatArray, angles: FloatArray) -> FloatArray:
     """Return how far apart two boxes touch, their half lengths and half widths (P, 2) added, along angles (P,)."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        sides = np.where(halves > 0.0, halves / np.abs(unit(angles)), 0.0)
-    return np.asarray(sides.min(axis=-1))
+    off = np.abs(unit(angles))
+    sides = np.divide(halves, off, out=np.full_like(halves, np.inf), where=off > 0.0)
+    return np.where(halves.any(axis=-1), sides.min(axis=-1), 0.0)
 
 
 def _atoms(

@@ -1,7 +1,7 @@
 """Facts as half-planes: what they imply of the place of a referent, given that of its relatum.
 
 Every region is drawn no smaller than it is, so that what is found impossible surely is: circles as the polygons around
-them, angles with the deviation of the landmark that turns their axis, boxes by the most they can reach.
+them, angles closed and with the deviation of the landmark that turns their axis, boxes by the most they can reach.
 """
 
 from __future__ import annotations
@@ -19,7 +19,6 @@ SIDES = 16
 OUTWARD = 8
 CERTAIN = 3.0
 """How many deviations a landmark may be off."""
-_APART = 1e-3
 _QUARTER = 0.25 * math.pi
 _AXES = {(1, 1): 0.0, (1, -1): 0.5 * math.pi, (-1, -1): math.pi, (-1, 1): 1.5 * math.pi}
 
@@ -63,7 +62,7 @@ class Regions:
         if middle is not None:
             half = min(_QUARTER + CERTAIN * fact.axis.deviation, 0.5 * math.pi)
             for normal in (middle + half - 0.5 * math.pi, middle - half + 0.5 * math.pi):
-                yield _apart(fact, normal, -_APART if half < 0.49 * math.pi else 0.0)
+                yield _apart(fact, normal, 0.0)
 
     def _disc(self, fact: Fact) -> Iterator[HalfPlane]:
         most = self._most(fact)
@@ -87,9 +86,12 @@ class Regions:
             yield HalfPlane(fact.names[0], fact.names[1], normal, half)
 
     def _most(self, fact: Fact) -> float:
-        """Return the greatest distance between the centres [m]: from contact, some share of the way or some length."""
+        """Return the greatest distance between the centres [m]: from contact, some share of the way or some length.
+
+        What may be at the edge may be beyond it.
+        """
         distance = fact.relation.distance
-        if not isinstance(distance, Uniform):
+        if not isinstance(distance, Uniform) or _reaches_the_edge(distance):
             return math.inf
         contact = sum(_radius(self._kind(name)) for name in fact.names)
         if distance.high.dimension is not Dimension.FRACTION:
@@ -113,6 +115,10 @@ class Regions:
 
     def _kind(self, name: str) -> ObjectClass:
         return self.graph.classes[self.graph.class_of(name)]
+
+
+def _reaches_the_edge(distance: Uniform) -> bool:
+    return distance.high.dimension is Dimension.FRACTION and distance.high.value >= 1.0
 
 
 def direction(fact: Fact) -> float | None:

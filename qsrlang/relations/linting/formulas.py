@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 
 from qsrlang.language.diagnostics import Diagnostic, Edit, Label
 from qsrlang.language.printing.printer import print_formula
 from qsrlang.language.source import Span
 from qsrlang.language.statements import Believe, Observe, Require, Statement
 from qsrlang.language.syntax import And, Atom, Formula, Frame, Not, Or, atoms_of
+from qsrlang.relations.algebra import derivation
 from qsrlang.relations.calculus import Relation
 from qsrlang.relations.linting.linted import Linted, warning, without_comments
 
@@ -17,7 +19,7 @@ _CONNECTIVE = re.compile(r"\s*(?:∧|&|and)\s*")
 
 
 def implied_atoms(linted: Linted) -> Iterator[Diagnostic]:
-    """Atoms of a conjunction that say what another one says: the same, or its converse the other way round."""
+    """Atoms of a conjunction that others imply: one that says the same, or directions of one frame along a chain."""
     for _, formula in linted.formulas():
         for part in _unnegated(formula):
             if isinstance(part, And):
@@ -33,16 +35,42 @@ def _implied(conjunction: And, linted: Linted) -> Iterator[Diagnostic]:
         first = next((said[way] for way in ways if way in said), None)
         if first is None:
             said[ways[0]] = atom
-            continue
-        yield warning(
-            "Q506",
-            f"'{atom.span.text}' says nothing new",
-            atom.span,
-            "implied by the other atom",
-            "leave one of the two out",
-            labels=(Label(first.span, "this says the same"),),
-            edits=_without(conjunction, number),
-        )
+        else:
+            yield _saying_nothing_new(conjunction, number, (first,))
+    yield from _derived(conjunction, list(said.values()))
+
+
+def _derived(conjunction: And, atoms: list[Atom]) -> Iterator[Diagnostic]:
+    """Yield a finding for each direction that follows from two or more of the others; the last ones go first."""
+    pairs = [atom for atom in atoms if len({one.text for one in atom.arguments}) == len(atom.arguments) == 2]
+    for atom in reversed(pairs):
+        others = [one for one in pairs if one is not atom]
+        chain = derivation(others, atom)
+        if chain and not any(derivation(others, one) for one in _turned(atom)):
+            pairs = others
+            number = next(n for n, part in enumerate(conjunction.parts) if part is atom)
+            yield _saying_nothing_new(conjunction, number, chain)
+
+
+def _turned(atom: Atom) -> Iterator[Atom]:
+    """Yield the atom that says the opposite: if that follows as well, the others contradict each other."""
+    yield replace(atom, arguments=atom.arguments[::-1])
+
+
+def _saying_nothing_new(conjunction: And, number: int, others: tuple[Atom, ...]) -> Diagnostic:
+    atom = conjunction.parts[number]
+    alone = len(others) == 1
+    return warning(
+        "Q506",
+        f"'{atom.span.text}' says nothing new",
+        atom.span,
+        "implied by the other atom" if alone else f"implied by the {len(others)} others",
+        "leave one of the two out"
+        if alone
+        else "leave it out; counted beside them, it narrows the answer twice",
+        labels=tuple(Label(one.span, "this says the same" if alone else "from this") for one in others),
+        edits=_without(conjunction, number),
+    )
 
 
 def _ways_to_say(atom: Atom, relation: Relation | None) -> list[tuple[object, ...]]:
