@@ -259,6 +259,31 @@ def test_known_poses_leave_room(statements):
     assert found(LAB + statements).is_consistent
 
 
+DESK = """surface Desk { size: 2 m × 1 m }.
+static Monitor { on: Desk }.
+dynamic Cup { on: Desk }, Pen.
+relation far(referent, relatum) { distance: uniform(1.6 m, 5 m) }.
+landmark m : Monitor at (0 m, 0 m) facing -90 deg.
+landmark d : Desk at (DX m, 0 m) facing -90 deg.
+"""
+
+
+@pytest.mark.parametrize(
+    ("referent", "shift", "consistent"), [("Cup", 0, False), ("Pen", 0, True), ("Cup", 9, True)]
+)
+def test_what_stands_on_a_desk_with_its_landmark_does_not_leave_it(referent, shift, consistent):
+    answer = found(
+        DESK.replace("DX", str(shift)) + f"observe left-of({referent}, Monitor) ∧ far({referent}, Monitor)."
+    )
+    assert answer.is_consistent == consistent
+    assert [one.poses for one in answer.conflicts] == ([] if consistent else [("d", "m")])
+
+
+def test_a_conflict_of_directions_alone_does_not_rest_on_poses():
+    (conflict,) = found(LAB + "require left-of(Cup, m) ∧ right-of(Cup, m) ∧ near(Cup, l).").conflicts[:1]
+    assert conflict.poses == ()
+
+
 @pytest.mark.parametrize("name", ["behind-of", "right-of"])
 def test_a_landmark_on_the_diagonal_may_be_of_either_side(name):
     placed = LAB.replace("(3 m, 0 m)", "(2 m, 2 m)").replace(" ± (5 cm, 5 cm, 0 deg)", "")
@@ -300,9 +325,10 @@ def test_a_conflict_with_poses_is_minimal_too(points, said):
     placed = LAB.replace("(0 m, 0 m)", "({} m, {} m)".format(*points[0]))
     placed = placed.replace("(3 m, 0 m)", "({} m, {} m)".format(*points[1]))
     required = [f"{name}({names[p[0]]}, {names[p[1]]}) wrt absolute" for name, p in said]
-    required += ["near(Cup, m)", "near(Pen, l)"]
+    required += ["near(Cup, m)", "near(Pen, l)", "far(Pen, Cup)", "far(Book, m)"]
     for conflict in found(placed + "".join(f"require {one}.\n" for one in required)).conflicts:
         stated = texts(conflict)
+        assert not found(placed + "".join(f"require {one}.\n" for one in stated)).is_consistent
         for number in range(len(stated)):
             rest = stated[:number] + stated[number + 1 :]
             assert found(placed + "".join(f"require {one}.\n" for one in rest)).is_consistent
@@ -355,6 +381,30 @@ def test_conceptual_neighbours_of_the_built_in_relations():
     assert conceptual_neighbours(relations["left-of"]) == ("behind-of", "in-front-of")
     assert conceptual_neighbours(relations["close-to"]) == ("distant-from",)
     assert conceptual_neighbours(relations["on"]) == ()
+
+
+@pytest.mark.parametrize(
+    "statements",
+    [
+        "require near(Cup, Monitor) ∧ near(Cup, Lamp).",
+        "observe near(Cup, Monitor). observe near(Cup, Lamp).",
+        "observe near(Cup, Monitor) and near(Pen, Monitor) and near(Cup, Lamp).",
+        "scene(Cup, Monitor, Lamp) ⇔ near(Cup, Monitor) ∧ near(Cup, Lamp).",
+    ],
+)
+def test_the_last_resort_is_an_atom_less_as_an_edit_of_the_text(statements):
+    (conflict,) = found(LAB + statements).conflicts
+    assert len(conflict.relaxations) == 2
+    for one in conflict.relaxations:
+        assert (one.steps, "leave out" in one.text) == (None, True)
+        assert found(edited(LAB + statements, one.edits)).is_consistent
+
+
+def test_no_edit_takes_a_comment_or_the_side_of_a_disjunction():
+    (conflict,) = found(LAB + "observe near(Cup, m) ∧ # or so ∧\n near(Cup, l).").conflicts
+    assert [bool(one.edits) for one in conflict.relaxations] == [False, True]
+    (conflict,) = found(LAB + "require near(Cup, m) ∨ near(Cup, m). require near(Cup, l).").conflicts
+    assert [bool(one.edits) for one in conflict.relaxations] == [True, False, False]
 
 
 # As findings

@@ -13,7 +13,8 @@ from qsrlang.language.syntax import Atom
 class Relaxation:
     """A change after which a conflict is gone: how many steps between conceptual neighbours it takes, and its edits.
 
-    `steps` is None where an atom is to be left out instead, which takes no edits. `short` is the text without places.
+    `steps` is None where an atom is to be left out instead; its edits are empty where more than that has to go.
+    `short` is the text without places.
     """
 
     steps: int | None

@@ -77,7 +77,8 @@ class Examination:
     def _bare(self, facts: Sequence[Fact]) -> Conflict:
         atoms = {fact.mention: fact.atom for fact in facts}
         ordered = tuple(atoms[mention] for mention in sorted(atoms))
-        return Conflict(ordered, self.poses_behind(facts))
+        without_numbers = self.placing is None or Search().clash(only(atoms.keys(), self.claims))
+        return Conflict(ordered, () if without_numbers else self.poses_behind(facts))
 
     def _written(self, mentions: Set[Mention]) -> list[Fact]:
         """Return the facts written at some places, those that several claims hold once."""

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import chain
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from scipy.optimize import linprog
@@ -19,7 +19,9 @@ from scipy.sparse import csr_array
 
 from qsrlang.arrays import FloatArray
 from qsrlang.relations.consistency.claims import Fact
+from qsrlang.relations.consistency.frames import Axes
 from qsrlang.relations.consistency.regions import HalfPlane, Regions, direction, far, within
+from qsrlang.relations.consistency.searching import Undecided
 from qsrlang.relations.graph import Landmark, RelationGraph
 
 MAX_SPLITS = 200
@@ -33,15 +35,22 @@ class Placing:
 
     regions: Regions
     landmarks: Mapping[str, Landmark]
+    carriers: Mapping[str, Landmark] = field(default_factory=dict)
     memory: dict[Fact, tuple[HalfPlane, ...]] = field(default_factory=dict, repr=False)
 
     @classmethod
     def of(cls, graph: RelationGraph) -> Placing:
         """Return the judge of a graph."""
-        return cls(Regions(graph), {one.name: one for one in graph.landmarks})
+        regions = Regions(graph)
+        carriers = {}
+        for name, roots in Axes.of(graph).facing.items():
+            carrier = regions.support(name, roots)
+            if carrier is not None:
+                carriers[name] = carrier
+        return cls(regions, {one.name: one for one in graph.landmarks}, carriers)
 
     def __call__(self, facts: Sequence[Fact]) -> Sequence[Fact]:
-        """Return facts that cannot be placed together, or nothing; beyond MAX_SPLITS, nothing is claimed."""
+        """Return facts that cannot be placed together, or nothing; raises Undecided beyond MAX_SPLITS."""
         if not self.can_clash(facts):
             return ()
         return _Placement(self, facts).clash()
@@ -51,8 +60,7 @@ class Placing:
 
         Otherwise everything may be shrunk towards one point without leaving a sector or a disc.
         """
-        spoken = {name for fact in facts for name in fact.names} & self.landmarks.keys()
-        return len(spoken) > 1 or any(self.regions.bounds_below(fact) for fact in facts)
+        return len(self.poses_behind(facts)) > 1 or any(self.regions.bounds_below(fact) for fact in facts)
 
     def half_planes(self, fact: Fact) -> tuple[HalfPlane, ...]:
         """Return what a fact implies of places; remembered, for a search asks again and again."""
@@ -61,11 +69,20 @@ class Placing:
         return self.memory[fact]
 
     def poses_behind(self, facts: Sequence[Fact]) -> tuple[str, ...]:
-        """Return the landmarks that facts speak of, where their poses are needed for a contradiction."""
-        return tuple(sorted({name for fact in facts for name in fact.names} & self.landmarks.keys()))
+        """Return the landmarks that facts speak of, and those that carry what they speak of."""
+        names = {name for fact in facts for name in fact.names}
+        carriers = {self.carriers[name].name for name in names & self.carriers.keys()}
+        return tuple(sorted((names & self.landmarks.keys()) | carriers))
+
+    def supports(self, facts: Sequence[Fact]) -> list[_Row]:
+        """Return the outlines of what carries the objects that facts speak of."""
+        names = {name for fact in facts for name in fact.names}
+        carried = sorted(names & self.carriers.keys() - self.landmarks.keys())
+        return [((), side) for name in carried for side in self.regions.on_support(name, self.carriers[name])]
 
 
-_Row = tuple[Fact, HalfPlane]
+_Row: TypeAlias = tuple[tuple[Fact, ...], HalfPlane]
+"""A half-plane and the facts that together imply it; none where what is known of landmarks does."""
 
 
 @dataclass(slots=True)
@@ -77,11 +94,12 @@ class _Placement:
     left: int = MAX_SPLITS
 
     def clash(self) -> Sequence[Fact]:
-        rows: list[_Row] = [(fact, one) for fact in self.facts for one in self.placing.half_planes(fact)]
-        return self._split(rows, self._keeping_apart(rows))
+        rows: list[_Row] = [((fact,), one) for fact in self.facts for one in self.placing.half_planes(fact)]
+        apart = self._keeping_apart(rows)
+        return self._split([*rows, *self.placing.supports(self.facts)], apart)
 
     def _keeping_apart(self, rows: list[_Row]) -> list[tuple[Fact, tuple[HalfPlane, ...]]]:
-        """Return the facts with a least distance, with their sides; one with a direction beside it has one side."""
+        """Return the facts with a least distance, with their sides; add what follows with a direction beside one."""
         directed = {fact.names: fact for fact in self.facts if direction(fact) is not None}
         found = []
         for fact in self.facts:
@@ -90,15 +108,14 @@ class _Placement:
                 least = self.placing.regions.least(fact)
                 one = far(beside, fact, least) if beside else None
                 if beside and one:
-                    rows.append((beside, one))
-                    rows.append((fact, one))
+                    rows.append(((fact, beside), one))
                 found.append((fact, self.placing.regions.outward(fact)))
         return found
 
     def _split(self, rows: list[_Row], apart: list[tuple[Fact, tuple[HalfPlane, ...]]]) -> Sequence[Fact]:
         self.left -= 1
         if self.left < 0:
-            return ()
+            raise Undecided
         places, clashing = self._solve(rows)
         if clashing:
             return clashing
@@ -107,17 +124,17 @@ class _Placement:
             return ()
         fact, sides = broken
         others = [one for one in apart if one is not broken]
-        together: dict[int, Fact] = {}
+        together: dict[Fact, None] = {}
         for side in sides:
-            found = self._split([*rows, (fact, side)], others)
+            found = self._split([*rows, ((fact,), side)], others)
             if not any(one is fact for one in found):
                 return found
-            together |= {id(one): one for one in found}
-        return tuple(together.values())
+            together |= dict.fromkeys(found)
+        return tuple(together)
 
     def _solve(self, rows: Sequence[_Row]) -> tuple[Mapping[str, FloatArray], Sequence[Fact]]:
         """Return where objects can be placed, or the facts whose half-planes have a price."""
-        names = sorted({name for fact, _ in rows for name in fact.names})
+        names = sorted({name for _, one in rows for name in (one.name, one.other)})
         column = {name: 2 * number for number, name in enumerate(names)}
         if not rows:
             return {}, ()
@@ -130,7 +147,7 @@ class _Placement:
             places = {} if solved.x is None else {name: solved.x[at : at + 2] for name, at in column.items()}
             return places, ()
         prices = np.flatnonzero(solved.ineqlin.marginals < -_PRICED).tolist()
-        return {}, tuple({id(rows[n][0]): rows[n][0] for n in prices}.values())
+        return {}, tuple(dict.fromkeys(fact for n in prices for fact in rows[n][0]))
 
     def _limits(self, name: str) -> tuple[tuple[float | None, float | None], ...]:
         landmark = self.placing.landmarks.get(name)

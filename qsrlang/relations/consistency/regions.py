@@ -7,7 +7,7 @@ them, angles closed and with the deviation of the landmark that turns their axis
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from qsrlang.language.syntax import Dimension, Uniform
@@ -53,6 +53,26 @@ class Regions:
         bound = -least * math.cos(math.pi / OUTWARD)
         return tuple(_apart(fact, 2.0 * math.pi * k / OUTWARD, bound) for k in range(OUTWARD))
 
+    def support(self, name: str, roots: Iterable[Landmark]) -> Landmark | None:
+        """Return the landmark that carries an object: the only one its class stands on, if all its roots are on it."""
+        wanted = self._kind(name).on
+        carriers = [one for one in self.graph.landmarks if one.kind == wanted and one.name != name]
+        roots = [one for one in roots if one.name != name]
+        if len(carriers) == 1 and roots and all(self._is_on(one, carriers[0]) for one in roots):
+            return carriers[0]
+        return None
+
+    def on_support(self, name: str, carrier: Landmark) -> tuple[HalfPlane, ...]:
+        """Return the sides of what carries an object."""
+        return tuple(self._box(name, carrier))
+
+    def _is_on(self, landmark: Landmark, carrier: Landmark) -> bool:
+        offset = landmark.x - carrier.x, landmark.y - carrier.y
+        return all(
+            side.normal[0] * offset[0] + side.normal[1] * offset[1] <= side.bound
+            for side in self._box(landmark.name, carrier)
+        )
+
     def bounds_below(self, fact: Fact) -> bool:
         """Return whether a fact keeps its referent away from its relatum."""
         return len(fact.names) == 2 and self.least(fact) > 0.0
@@ -72,18 +92,21 @@ class Regions:
                 yield HalfPlane(fact.names[0], fact.names[1], normal, most)
 
     def _outline(self, fact: Fact) -> Iterator[HalfPlane]:
-        """Yield the four sides of a landmark's box that a referent is on or in."""
+        """Yield the sides of the landmark that a referent is on or in."""
         landmark = next((one for one in self.graph.landmarks if one.name == fact.names[1]), None)
-        if fact.relation.region is None or landmark is None or landmark.heading is None:
-            return
+        if fact.relation.region is not None and landmark is not None:
+            yield from self._box(fact.names[0], landmark)
+
+    def _box(self, name: str, landmark: Landmark) -> Iterator[HalfPlane]:
+        """Yield the four sides of a landmark's box, if its size and heading are known, that hold a name."""
         kind = self._kind(landmark.name)
-        if kind.width == 0.0 or kind.depth == 0.0:
+        if landmark.heading is None or kind.width == 0.0 or kind.depth == 0.0:
             return
-        slack = CERTAIN * landmark.deviation[2] * math.hypot(kind.width, kind.depth)
+        slack = CERTAIN * landmark.deviation[2] * _diagonal(kind)
         for quarter in range(4):
             half = 0.5 * (kind.depth, kind.width)[quarter % 2] + slack
             normal = _unit(landmark.heading + quarter * 0.5 * math.pi)
-            yield HalfPlane(fact.names[0], fact.names[1], normal, half)
+            yield HalfPlane(name, landmark.name, normal, half)
 
     def _most(self, fact: Fact) -> float:
         """Return the greatest distance between the centres [m]: from contact, some share of the way or some length.

@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations, islice
 
 from qsrlang.language.diagnostics import Edit
+from qsrlang.language.source import Span
 from qsrlang.language.syntax import Atom, Name
 from qsrlang.relations.algebra import conceptual_neighbours
 from qsrlang.relations.calculus import Relation
 from qsrlang.relations.consistency.claims import Claim, Fact, Mention, Option
 from qsrlang.relations.consistency.conflicts import Relaxation, is_plain, one_line
-from qsrlang.relations.consistency.searching import Search, Theory, Undecided
+from qsrlang.relations.consistency.searching import Search, Theory, Undecided, only
 
 MAX_RELAXATIONS = 3
 MAX_TRIALS = 200
+_BEFORE = re.compile(r"\s*(?:∧|&|\band\b)\s*\Z")
+_AFTER = re.compile(r"\s*(?:∧|&|\band\b)\s*")
+_STATEMENT = re.compile(r"(?:\A|[\s.}])(?P<keyword>observe|require)\s+\Z")
+_END = re.compile(r"\s*\.")
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +55,18 @@ def relaxations(
         found = tuple(_relaxation(one) for one in islice(ending, MAX_RELAXATIONS))
         if found:
             return found
-    return tuple(Relaxation(None, f"leave out '{one_line(atom)}'") for atom in _atoms(conflict))
+    return _omissions(conflict, claims, placing)
+
+
+def _omissions(
+    conflict: Sequence[Fact], claims: Sequence[Claim], placing: Theory | None
+) -> tuple[Relaxation, ...]:
+    """Return the atoms to leave out: those that end the conflict alone, or all, without edits, if none does."""
+    mentions = frozenset(fact.mention for claim in claims for fact in claim.facts)
+    omitted = {one: _omission(atom) for one, atom in _atoms(conflict)}
+    ending = (told for one, told in omitted.items() if _is_free(only(mentions - {one}, claims), placing))
+    found = tuple(islice(ending, MAX_RELAXATIONS))
+    return found or tuple(replace(one, edits=()) for one in omitted.values())[:MAX_RELAXATIONS]
 
 
 def _changes(
@@ -81,8 +98,13 @@ def _pairs(single: Iterable[_Change]) -> Iterator[tuple[_Change, ...]]:
 
 def _ends(changes: Sequence[_Change], claims: Sequence[Claim], placing: Theory | None) -> bool:
     changed = {one.mention: one for one in changes}
+    return _is_free([_changed(claim, changed) for claim in claims], placing)
+
+
+def _is_free(claims: Iterable[Claim], placing: Theory | None) -> bool:
+    """Return whether claims surely hold together."""
     try:
-        return not Search(placing).clash(_changed(claim, changed) for claim in claims)
+        return not Search(placing).clash(claims)
     except Undecided:
         return False
 
@@ -113,6 +135,29 @@ def _relaxation(changes: Sequence[_Change]) -> Relaxation:
     )
 
 
-def _atoms(conflict: Sequence[Fact]) -> Iterator[Atom]:
+def _atoms(conflict: Sequence[Fact]) -> list[tuple[Mention, Atom]]:
+    """Return the atoms of a conflict with their places, the last written first."""
     atoms = {fact.mention: fact.atom for fact in conflict}
-    return (atoms[mention] for mention in sorted(atoms, reverse=True))
+    return [(mention, atoms[mention]) for mention in sorted(atoms, reverse=True)]
+
+
+def _omission(atom: Atom) -> Relaxation:
+    told = f"leave out '{one_line(atom)}'"
+    return Relaxation(None, f"{atom.span}: {told}", told, _without(atom) if is_plain(atom) else ())
+
+
+def _without(atom: Atom) -> tuple[Edit, ...]:
+    """Return the edit that takes an atom out with a connective beside it, or with its statement; none if unclear."""
+    text, span = atom.span.source.text, atom.span
+    before, after = _BEFORE.search(text[: span.start]), _AFTER.match(text, span.end)
+    statement, end = _STATEMENT.search(text[: span.start]), _END.match(text, span.end)
+    if before:
+        cut = Span(span.source, before.start(), span.end)
+    elif after:
+        cut = Span(span.source, span.start, after.end())
+    elif statement and end:
+        cut = Span(span.source, statement.start("keyword"), end.end())
+    else:
+        return ()
+    line = text.rfind("\n", 0, cut.start) + 1
+    return () if "#" in text[line : cut.end] else (Edit(cut, ""),)

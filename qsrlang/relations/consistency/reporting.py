@@ -61,8 +61,8 @@ def _finding(conflict: Conflict) -> Diagnostic:
 
 def _help(relaxations: Sequence[Relaxation]) -> str:
     each = "each could hold without one of the others"
-    if not relaxations or relaxations[0].steps is None:
-        return f"{each}; remove one of them"
+    if not relaxations:
+        return each
     first, *others = (one.short for one in relaxations)
     also = f" (or {', or '.join(others)})" if others else ""
     return f"{each}; the least change: {first}{also}"
