@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence, Set
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from qsrlang.relations.calculus import Relation
 from qsrlang.relations.consistency.claims import Claim, Fact, Mention, Option
 from qsrlang.relations.consistency.conflicts import Conflict, Consistency, Impossible
 from qsrlang.relations.consistency.orders import entangled
 from qsrlang.relations.consistency.relaxing import relaxations
-from qsrlang.relations.consistency.searching import Search, Theory, Undecided, only
+from qsrlang.relations.consistency.searching import Effort, Search, Theory, Undecided, only
 
 MAX_CONFLICTS = 20
 MAX_ALTERNATIVES = 200
@@ -32,6 +32,7 @@ class Examination:
     relations: Mapping[str, Relation]
     placing: Theory | None = None
     poses_behind: Callable[[Sequence[Fact]], tuple[str, ...]] = no_poses
+    effort: Effort = field(default_factory=Effort)
 
     def consistency(self) -> Consistency:
         """Return every conflict, no two of which share an atom; where there is none, what holds in no world."""
@@ -58,10 +59,10 @@ class Examination:
         try:
             while len(cores) < MAX_CONFLICTS:
                 claims = only(remaining, self.claims)
-                core = Search(self.placing).clash(claims)
+                core = Search(self.effort, self.placing).clash(claims)
                 if not core:
                     return cores, True
-                cores.append(Search(self.placing).minimal(core, claims))
+                cores.append(Search(self.effort, self.placing).minimal(core, claims))
                 remaining -= cores[-1]
         except Undecided:
             pass
@@ -71,14 +72,22 @@ class Examination:
         others = frozenset().union(*(one for one in cores if one is not core))
         claims = only(self.mentions - others, self.claims)
         facts = self._written(core)
-        found = relaxations(facts, claims, self.relations, self.placing)
+        found = relaxations(facts, claims, self.relations, Search(self.effort, self.placing))
         return replace(self._bare(facts), relaxations=found)
 
     def _bare(self, facts: Sequence[Fact]) -> Conflict:
         atoms = {fact.mention: fact.atom for fact in facts}
         ordered = tuple(atoms[mention] for mention in sorted(atoms))
-        without_numbers = self.placing is None or Search().clash(only(atoms.keys(), self.claims))
-        return Conflict(ordered, () if without_numbers else self.poses_behind(facts))
+        return Conflict(ordered, self._poses(atoms.keys(), facts))
+
+    def _poses(self, mentions: Set[Mention], facts: Sequence[Fact]) -> tuple[str, ...]:
+        """Return the landmarks whose poses a conflict rests on; none where directions alone contradict each other."""
+        try:
+            if self.placing is None or Search(self.effort).clash(only(mentions, self.claims)):
+                return ()
+        except Undecided:
+            pass
+        return self.poses_behind(facts)
 
     def _written(self, mentions: Set[Mention]) -> list[Fact]:
         """Return the facts written at some places, those that several claims hold once."""
@@ -113,8 +122,8 @@ class Examination:
     def _never(self, claim: Claim, others: tuple[Claim, ...]) -> Impossible | None:
         claims = (claim, *others)
         try:
-            core = Search(self.placing).clash(claims)
-            core = Search(self.placing).minimal(core, claims) if core else core
+            core = Search(self.effort, self.placing).clash(claims)
+            core = Search(self.effort, self.placing).minimal(core, claims) if core else core
         except Undecided:
             return None
         if not core:

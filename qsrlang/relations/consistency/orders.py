@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import chain, combinations
 from typing import TypeAlias
 
 from qsrlang.relations.algebra import signs_of
@@ -35,6 +35,13 @@ def contradiction(facts: Iterable[Fact]) -> tuple[Fact, ...]:
     """
     facts = tuple(facts)
     return min((*_excluding(facts), *_circles(facts)), key=len, default=())
+
+
+def some_contradiction(facts: Iterable[Fact]) -> tuple[Fact, ...]:
+    """Return facts of a conjunction that contradict each other, the first that are found, or nothing."""
+    facts = tuple(facts)
+    circles = (one for steps in _orders(facts) for one in _all_circles(_knotted(steps)))
+    return next(chain(_excluding(facts), circles), ())
 
 
 def entangled(facts: Iterable[Fact]) -> frozenset[Mention]:
@@ -120,11 +127,15 @@ def _peeled(
 
 
 def _shortest_circle(steps: Sequence[_Step]) -> tuple[Fact, ...]:
+    return min(_all_circles(steps), key=len, default=())
+
+
+def _all_circles(steps: Sequence[_Step]) -> Iterator[tuple[Fact, ...]]:
+    """Yield a shortest circle through each name that lies on one."""
     after: dict[str, list[_Step]] = defaultdict(list)
     for step in steps:
         after[step.low].append(step)
-    circles = (_circle_through(start, after) for start in after)
-    return min(filter(None, circles), key=len, default=())
+    yield from filter(None, (_circle_through(start, after) for start in tuple(after)))
 
 
 def _circle_through(start: str, after: _After) -> tuple[Fact, ...]:

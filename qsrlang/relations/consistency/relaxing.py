@@ -14,7 +14,7 @@ from qsrlang.relations.algebra import conceptual_neighbours
 from qsrlang.relations.calculus import Relation
 from qsrlang.relations.consistency.claims import Claim, Fact, Mention, Option
 from qsrlang.relations.consistency.conflicts import Relaxation, is_plain, one_line
-from qsrlang.relations.consistency.searching import Search, Theory, Undecided, only
+from qsrlang.relations.consistency.searching import Search, Undecided, only
 
 MAX_RELAXATIONS = 3
 MAX_TRIALS = 200
@@ -46,25 +46,23 @@ def relaxations(
     conflict: Sequence[Fact],
     claims: Sequence[Claim],
     relations: Mapping[str, Relation],
-    placing: Theory | None,
+    search: Search,
 ) -> tuple[Relaxation, ...]:
     """Return the best changes to one conflict of claims that have no other: fewest steps, last written first."""
     single, twice = _changes(conflict, relations)
     for changes in ([(one,) for one in single], [*((one,) for one in twice), *_pairs(single)]):
-        ending = (one for one in changes[:MAX_TRIALS] if _ends(one, claims, placing))
+        ending = (one for one in changes[:MAX_TRIALS] if _ends(one, claims, search))
         found = tuple(_relaxation(one) for one in islice(ending, MAX_RELAXATIONS))
         if found:
             return found
-    return _omissions(conflict, claims, placing)
+    return _omissions(conflict, claims, search)
 
 
-def _omissions(
-    conflict: Sequence[Fact], claims: Sequence[Claim], placing: Theory | None
-) -> tuple[Relaxation, ...]:
+def _omissions(conflict: Sequence[Fact], claims: Sequence[Claim], search: Search) -> tuple[Relaxation, ...]:
     """Return the atoms to leave out: those that end the conflict alone, or all, without edits, if none does."""
     mentions = frozenset(fact.mention for claim in claims for fact in claim.facts)
     omitted = {one: _omission(atom) for one, atom in _atoms(conflict)}
-    ending = (told for one, told in omitted.items() if _is_free(only(mentions - {one}, claims), placing))
+    ending = (told for one, told in omitted.items() if _is_free(only(mentions - {one}, claims), search))
     found = tuple(islice(ending, MAX_RELAXATIONS))
     return found or tuple(replace(one, edits=()) for one in omitted.values())[:MAX_RELAXATIONS]
 
@@ -96,15 +94,15 @@ def _pairs(single: Iterable[_Change]) -> Iterator[tuple[_Change, ...]]:
     return (pair for pair in pairs if pair[0].mention != pair[1].mention)
 
 
-def _ends(changes: Sequence[_Change], claims: Sequence[Claim], placing: Theory | None) -> bool:
+def _ends(changes: Sequence[_Change], claims: Sequence[Claim], search: Search) -> bool:
     changed = {one.mention: one for one in changes}
-    return _is_free([_changed(claim, changed) for claim in claims], placing)
+    return _is_free([_changed(claim, changed) for claim in claims], search)
 
 
-def _is_free(claims: Iterable[Claim], placing: Theory | None) -> bool:
+def _is_free(claims: Iterable[Claim], search: Search) -> bool:
     """Return whether claims surely hold together."""
     try:
-        return not Search(placing).clash(claims)
+        return not search.clash(claims)
     except Undecided:
         return False
 

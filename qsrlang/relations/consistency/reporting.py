@@ -11,10 +11,12 @@ from qsrlang.relations.consistency.claims import Claim, Fact, claims_of
 from qsrlang.relations.consistency.conflicts import Conflict, Relaxation
 from qsrlang.relations.consistency.finding import Examination
 from qsrlang.relations.consistency.relaxing import relaxations
-from qsrlang.relations.consistency.searching import only
+from qsrlang.relations.consistency.searching import Effort, Search, only
 from qsrlang.relations.graph import RelationGraph
 
 CODE = "Q515"
+MAX_EFFORT = 20_000
+"""Less than where it is asked for, since a text is checked as it is typed."""
 
 
 def contradicting(
@@ -22,7 +24,7 @@ def contradicting(
 ) -> Diagnostic:
     """Return the finding that facts, among claims that have no other conflict, contradict each other."""
     atoms = sorted({fact.mention: fact.atom for fact in facts}.items())
-    found = relaxations(facts, claims, relations, None)
+    found = relaxations(facts, claims, relations, Search(Effort(MAX_EFFORT)))
     return _finding(Conflict(tuple(atom for _, atom in atoms), (), found))
 
 
@@ -37,7 +39,7 @@ def contradictions(
     claims = claims_of(graph)
     mentions = {fact.mention for claim in claims for fact in claim.facts}
     fresh = tuple(only(mentions - told, claims)) if told else claims
-    for conflict in Examination(fresh, graph.relations).conflicts()[0]:
+    for conflict in Examination(fresh, graph.relations, effort=Effort(MAX_EFFORT)).conflicts()[0]:
         if within is None or any(_lies_in(atom.span, within) for atom in conflict.atoms):
             yield _finding(conflict)
 
