@@ -72,6 +72,50 @@ def relations() -> None:
     show("TPCC relations of 2,000,000 triples", took, f"{rate:.0f} M/s, {took / limit:.1f} x one difference")
 
 
+def labels() -> None:
+    """How often a viewer at a point gives a pair another direction than the shared frame of all pairs does."""
+    rng = np.random.default_rng(0)
+    relata, referents = rng.uniform([-0.75, -0.4], [0.75, 0.4], (2, 200_000, 2))
+    shared = qsr.direction_of(qsr.qualify(relata - [0.0, 1.0], relata, referents))
+    for distance in (1.2, 2.5, 10.0):
+        seen = qsr.direction_of(qsr.qualify(np.array([0.0, -distance]), relata, referents))
+        share = 100.0 * float(np.mean(seen != shared))
+        print(f"{f'pairs on a desk labelled otherwise by a viewer {distance} m away':58s} {share:10.1f} %")
+
+
+def scattered(objects: int, atoms: int, landmarks: int) -> str:
+    """Return knowledge that is true of random points: directions on the map between random pairs."""
+    rng = np.random.default_rng(0)
+    points = rng.uniform(-5.0, 5.0, (objects, 2))
+    names = [f"thing-{n}" if n < landmarks else f"Thing{n}" for n in range(objects)]
+    numbers = (sorted(rng.permutation(objects)[:2].tolist(), reverse=True) for _ in range(2 * atoms))
+    pairs = list(dict.fromkeys((one, other) for one, other in numbers))[:atoms]
+    said = [one for one in qsr.relations_between(names, points, pairs=pairs) if "absolute" in one]
+    declared = ", ".join(f"Thing{n}" for n in range(landmarks, objects))
+    placed = [
+        f"static Kind{n}. landmark thing-{n} : Kind{n} at ({points[n, 0]} m, {points[n, 1]} m)."
+        for n in range(landmarks)
+    ]
+    return "\n".join([f"dynamic {declared}.", *placed, *(f"require {one}." for one in said)])
+
+
+def consistency() -> None:
+    desk = qsr.load("office/desk").graph
+    show("consistency of the desk of Fig. 2", seconds(lambda: qsr.find_conflicts(desk)), "")
+    free = qsr.parse_knowledge(scattered(200, 600, 0)).graph
+    took = seconds(lambda: qsr.find_conflicts(free))
+    show("consistency, 200 objects, 600 directions", took, "two orders, no numbers")
+    placed = qsr.parse_knowledge(scattered(200, 600, 20)).graph
+    numbers = seconds(lambda: qsr.find_conflicts(placed))
+    show("the same, 20 landmarks: linear programme", numbers, f"{numbers / took:.1f} x the orders")
+    circle = "require left-of(Thing0, Thing1) wrt absolute ∧ left-of(Thing1, Thing2) wrt absolute ∧ "
+    wrong = f"{scattered(200, 600, 0)}\n{circle} left-of(Thing2, Thing0) wrt absolute."
+    broken = qsr.parse_knowledge(wrong).graph
+    found = qsr.find_conflicts(broken).conflicts
+    shown = f"{len(found)} minimal, of {', '.join(str(len(one.atoms)) for one in found)} atoms, with their changes"
+    show("its conflicts, with a circle of three", seconds(lambda: qsr.find_conflicts(broken), 3), shown)
+
+
 def assumptions() -> None:
     known = qsr.load("office/desk").with_landmarks(MONITOR)
     for query in ("prob right-of(Cup, Keyboard)?", "where Cup given close-to(Cup, Keyboard)?"):
@@ -82,4 +126,6 @@ if __name__ == "__main__":
     inference()
     assumptions()
     relations()
+    consistency()
+    labels()
     views()

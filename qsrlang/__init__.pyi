@@ -59,9 +59,12 @@ from .plotting.mixtures import draw_mixture
 from .plotting.statistics import draw_found_by_time
 from .plotting.steps import draw_search_step
 from .plotting.voxels import draw_voxels
-from .relations.algebra import compose, converse, neighbours
+from .relations.algebra import compose, converse, entailed, neighbours
 from .relations.checking import check, check_text
+from .relations.consistency.conflicts import Conflict, Consistency, Impossible, Relaxation
+from .relations.consistency.deciding import find_conflicts
 from .relations.contexts import Circumstances
+from .relations.describing import relations_between
 from .relations.graph import Landmark, RelationGraph
 from .relations.qualify import TPCC, direction_of, qualify
 from .resources import data_root
@@ -83,6 +86,8 @@ __all__ = [
     "Circumstances",
     "Comparison",
     "Component",
+    "Conflict",
+    "Consistency",
     "Detection",
     "Diagnostic",
     "Diagnostics",
@@ -93,6 +98,7 @@ __all__ = [
     "Explanation",
     "FileError",
     "GaussianMixture",
+    "Impossible",
     "ImpossibleConditionError",
     "Interval",
     "KnowledgeBase",
@@ -121,6 +127,7 @@ __all__ = [
     "RandomPlanner",
     "Reason",
     "RelationGraph",
+    "Relaxation",
     "Robot",
     "Room",
     "Scenario",
@@ -158,6 +165,8 @@ __all__ = [
     "draw_search_step",
     "draw_story",
     "draw_voxels",
+    "entailed",
+    "find_conflicts",
     "find_supports",
     "format_source",
     "in_view",
@@ -179,6 +188,7 @@ __all__ = [
     "qualify",
     "read_octomap",
     "read_ros_map",
+    "relations_between",
     "relative_angle",
     "save_figure",
     "scene_picture",

@@ -12,7 +12,7 @@ import re
 from pathlib import Path
 
 from qsrlang.language import syntax as s
-from qsrlang.language.parser import parse_query, parse_source
+from qsrlang.language.parser import parse_place, parse_query, parse_source
 from qsrlang.language.source import Source, read_source
 from qsrlang.mixtures.queries import KnowledgeBase
 from qsrlang.relations.build import build_graph
@@ -36,7 +36,8 @@ class Program:
 
     def findings(self):
         """Return what is found in the program itself, not in what it imports."""
-        found = (*self.built.diagnostics, *lint(self.built, self.source))
+        viewer = next((place for key, _, place in self.stated() if key == "viewer"), None)
+        found = (*self.built.diagnostics, *lint(self.built, self.source, viewer and parse_place(viewer)))
         return [one for one in found if one.span.source.name == self.source.name]
 
     def stated(self):
@@ -136,6 +137,10 @@ class Program:
     def _same(self, rest):
         other = parse_source(read_source(Path(f"{rest}.qsr"))).document
         return "yes" if self.document == other else "no"
+
+    def _viewer(self, rest):
+        """Return where the viewer stands for whom the program is linted: as it is stated."""
+        return next(place for key, _, place in self.stated() if key == "viewer")
 
     def _warns(self, rest):
         return ", ".join(f"{one.code} {one.span.line}:{one.span.column}" for one in self.findings())

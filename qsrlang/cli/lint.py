@@ -10,13 +10,16 @@ from rich.console import Console
 from rich.table import Table
 
 from qsrlang.cli.findings import findings_json, print_findings
-from qsrlang.cli.options import Format, OutputFormat
+from qsrlang.cli.options import Format, Landmarks, OutputFormat, Viewer
+from qsrlang.errors import UnknownNameError
 from qsrlang.language.codes import CODES
 from qsrlang.language.diagnostics import Diagnostic, Severity
+from qsrlang.language.parser import parse_landmark, parse_place
 from qsrlang.relations.build import build_graph
 from qsrlang.relations.imports import find_knowledge, read_source
 from qsrlang.relations.linting.lint import RULES
 from qsrlang.relations.linting.lint import lint as find_doubtful
+from qsrlang.relations.values import landmark_value
 
 WARNED, REFUSED = 1, 2
 _EXITS = {Severity.ERROR: REFUSED, Severity.WARNING: WARNED}
@@ -28,14 +31,20 @@ LintedFile = Annotated[
 Rules = Annotated[bool, typer.Option("--rules", help="List the rules instead.")]
 
 
-def lint(file: LintedFile = None, rules: Rules = False, output: OutputFormat = Format.TEXT) -> None:
+def lint(
+    file: LintedFile = None,
+    viewer: Viewer = None,
+    landmark: Landmarks = None,
+    rules: Rules = False,
+    output: OutputFormat = Format.TEXT,
+) -> None:
     """Tell what 'qsr check' does, and what is legal but probably not meant; '# allow Q503' on a line silences it."""
     if rules:
         _print_rules(output)
         return
     if file is None:
         raise typer.BadParameter("name a file, or list the rules with --rules", param_hint="FILE")
-    found = _findings(file)
+    found = _findings(file, viewer, landmark or [])
     if output is Format.JSON:
         typer.echo(findings_json(found))
     else:
@@ -46,11 +55,16 @@ def lint(file: LintedFile = None, rules: Rules = False, output: OutputFormat = F
         raise typer.Exit(code)
 
 
-def _findings(file: str) -> list[Diagnostic]:
+def _findings(file: str, viewer: str | None, landmarks: list[str]) -> list[Diagnostic]:
     """Return what was found in building and in linting a file, its own findings first, in the order of the text."""
     source = read_source(find_knowledge(file))
     built = build_graph(source)
-    found = [*built.diagnostics, *find_doubtful(built, source)]
+    further = tuple(landmark_value(parse_landmark(one)) for one in landmarks)
+    for one in further:
+        if one.kind not in built.graph.classes:
+            raise UnknownNameError("class", one.kind, built.graph.classes)
+    place = None if viewer is None else parse_place(viewer)
+    found = [*built.diagnostics, *find_doubtful(built, source, place, further)]
     return sorted(found, key=lambda finding: (finding.span.source is not source, finding.span.start))
 
 

@@ -51,6 +51,7 @@ CODES = {
     "Q511": "a class without a capital",
     "Q512": "characters that change the order of the text",
     "Q513": "cyclic anchoring",
+    "Q514": "a front that the viewer does not see",
     "Q515": "atoms that contradict each other",
     "Q601": "a statement that another overrides",
 }

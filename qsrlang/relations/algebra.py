@@ -9,12 +9,13 @@ viewer near the objects the frames differ from pair to pair, and this holds only
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping
 from graphlib import CycleError, TopologicalSorter
 
 from qsrlang.errors import UnknownNameError
-from qsrlang.language.syntax import Atom, Frame, Normal
+from qsrlang.language.parser import parse_formula
+from qsrlang.language.syntax import And, Atom, Formula, Frame, Normal
 from qsrlang.relations.calculus import Relation
 
 _SIGNS = {"behind-of": (1, 1), "left-of": (1, -1), "in-front-of": (-1, -1), "right-of": (-1, 1)}
@@ -45,53 +46,111 @@ def neighbours(relation: str) -> frozenset[str]:
     return frozenset((_RING[at - 1], _RING[(at + 1) % 4]))
 
 
-def conflict(atoms: Sequence[Atom], relations: Mapping[str, Relation]) -> tuple[Atom, ...]:
-    """Return few atoms of a conjunction that contradict each other, or nothing where it is consistent.
+def conceptual_neighbours(relation: Relation) -> tuple[str, ...]:
+    """Return the relations that this one turns into by the least change.
 
-    Two kinds are found: relations that exclude each other on one ordered pair, and cycles of directions in the
-    relative or in the absolute frame. Without any one of the atoms returned, the others are consistent.
+    Of a direction those on either side; of a distance, such as close-to, those that it excludes.
     """
-    found = [*_excluding(atoms, relations), *_cycles(atoms, relations)]
-    return min(found, key=len, default=())
+    signs = signs_of(relation)
+    if signs is not None:
+        return tuple(sorted(neighbours(_NAMES[signs])))
+    return relation.disjoint if relation.angle is None and relation.region is None else ()
 
 
-@dataclass(frozen=True, slots=True)
-class _Step:
-    """An atom says that, in one of the two orders, `high` comes after `low`."""
+def entailed(atoms: Iterable[Formula | str], a: str, c: str, frame: Frame = Frame.RELATIVE) -> frozenset[str]:
+    """Return the directions that (A, C) may have in one frame, given atoms or conjunctions of them that all hold.
 
-    low: str
-    high: str
-    atom: Atom
+    Exact: those for which both orders remain without a circle; none where the atoms contradict each other already.
+    Atoms that are no directions, or in another frame, say nothing. Raises LanguageError.
+    """
+    given = [atom for one in atoms for atom in _conjoined(one) if atom.frame is frame]
+    orders = [_order([atom for atom in given if atom.relation.text in _SIGNS], axis) for axis in (0, 1)]
+    if any(_runs_in_a_circle(order) for order in orders):
+        return frozenset()
+    (us, ws) = (_ways(order, a, c) for order in orders)
+    return frozenset(_NAMES[u, w] for u in us for w in ws)
 
 
-def _signs(relation: str) -> tuple[int, int]:
-    if relation not in _SIGNS:
-        raise UnknownNameError("direction", relation, _SIGNS)
-    return _SIGNS[relation]
+def derivation(atoms: Iterable[Atom], goal: Atom) -> tuple[Atom, ...]:
+    """Return few of the atoms in a goal's frame from which it follows, in the order given; none where it does not.
+
+    A direction follows where a chain of others leads from its relatum to its referent in each of the two orders.
+    """
+    given = [one for one in atoms if one.frame is goal.frame and one.relation.text in _SIGNS]
+    if goal.relation.text not in _SIGNS or goal.frame is Frame.INTRINSIC:
+        return ()
+    ways = [_way(given, goal, axis) for axis in (0, 1)]
+    used = {id(atom) for way in ways for atom in way}
+    return tuple(atom for atom in given if id(atom) in used) if all(ways) else ()
 
 
-def _excluding(atoms: Sequence[Atom], relations: Mapping[str, Relation]) -> Iterator[tuple[Atom, ...]]:
-    said: dict[object, list[Atom]] = {}
+def _way(atoms: Iterable[Atom], goal: Atom, axis: int) -> tuple[Atom, ...]:
+    """Return the atoms along a shortest way from the lower to the higher object of a goal in one order."""
+    after: dict[str, list[tuple[str, Atom]]] = defaultdict(list)
     for atom in atoms:
-        said.setdefault((*(one.text for one in atom.arguments), atom.frame), []).append(atom)
-    for group in said.values():
-        for number, one in enumerate(group):
-            excluded = relations[one.relation.text].disjoint
-            yield from ((one, other) for other in group[number + 1 :] if other.relation.text in excluded)
+        low, high = _low_and_high(atom, axis)
+        after[low].append((high, atom))
+    start, end = _low_and_high(goal, axis)
+    ways: dict[str, tuple[Atom, ...]] = {start: ()}
+    waiting = [start]
+    for name in waiting:
+        for high, atom in after.get(name, ()):
+            if high not in ways:
+                ways[high] = (*ways[name], atom)
+                waiting.append(high)
+    return ways.get(end, ())
 
 
-def _cycles(atoms: Sequence[Atom], relations: Mapping[str, Relation]) -> Iterator[tuple[Atom, ...]]:
-    for frame in (Frame.RELATIVE, Frame.ABSOLUTE):
-        directed = [
-            (atom, _direction(relations[atom.relation.text])) for atom in atoms if atom.frame is frame
-        ]
-        for axis in (0, 1):
-            steps = [_step(atom, signs[axis]) for atom, signs in directed if signs is not None]
-            yield from filter(None, [_shortest_cycle(steps)])
+def _low_and_high(atom: Atom, axis: int) -> tuple[str, str]:
+    referent, relatum = (argument.text for argument in atom.arguments)
+    return (relatum, referent) if _SIGNS[atom.relation.text][axis] > 0 else (referent, relatum)
 
 
-def _direction(relation: Relation) -> tuple[int, int] | None:
-    """Return the signs of a relation whose angle is a normal density about one of the four axes."""
+def _conjoined(formula: Formula | str) -> Iterator[Atom]:
+    """Yield the atoms that hold if a formula does; disjunctions and negations say nothing here."""
+    match formula:
+        case str():
+            yield from _conjoined(parse_formula(formula))
+        case Atom():
+            yield formula
+        case And(parts=parts):
+            for part in parts:
+                yield from _conjoined(part)
+
+
+def _order(atoms: Iterable[Atom], axis: int) -> Mapping[str, set[str]]:
+    """Return the names that each comes after, in one of the two orders."""
+    before: dict[str, set[str]] = defaultdict(set)
+    for atom in atoms:
+        low, high = _low_and_high(atom, axis)
+        before[high].add(low)
+    return before
+
+
+def _runs_in_a_circle(order: Mapping[str, set[str]]) -> bool:
+    try:
+        TopologicalSorter(order).prepare()
+    except CycleError:
+        return True
+    return False
+
+
+def _ways(order: Mapping[str, set[str]], a: str, c: str) -> tuple[int, ...]:
+    """Return the signs that the coordinate of A less that of C may have: one where the order tells, else both."""
+    return (1,) if c in _below(order, a) else (-1,) if a in _below(order, c) else (1, -1)
+
+
+def _below(order: Mapping[str, set[str]], name: str) -> set[str]:
+    found, waiting = set[str](), [name]
+    while waiting:
+        fresh = order.get(waiting.pop(), set()) - found
+        found |= fresh
+        waiting += fresh
+    return found
+
+
+def signs_of(relation: Relation) -> tuple[int, int] | None:
+    """Return which way u and w grow from relatum to referent; None if the angle is not about one of the four axes."""
     if relation.arity != 2 or not isinstance(relation.angle, Normal):
         return None
     quarters = relation.angle.mean.value / (0.5 * math.pi)
@@ -100,46 +159,7 @@ def _direction(relation: Relation) -> tuple[int, int] | None:
     return _SIGNS[_RING[round(quarters) % 4]]
 
 
-def _step(atom: Atom, sign: int) -> _Step:
-    referent, relatum = (argument.text for argument in atom.arguments)
-    return _Step(relatum, referent, atom) if sign > 0 else _Step(referent, relatum, atom)
-
-
-def _shortest_cycle(steps: Iterable[_Step]) -> tuple[Atom, ...]:
-    """Return the atoms along a short cycle of an order, in their order, or nothing."""
-    after: dict[str, list[_Step]] = {}
-    for step in steps:
-        after.setdefault(step.low, []).append(step)
-    cycles = (_cycle_through(start, after) for start in _some_cycle(after))
-    return min(filter(None, cycles), key=len, default=())
-
-
-def _some_cycle(after: Mapping[str, list[_Step]]) -> list[str]:
-    """Return the names along a cycle, or nothing where there is none."""
-    try:
-        TopologicalSorter({low: [step.high for step in steps] for low, steps in after.items()}).prepare()
-    except CycleError as error:
-        return sorted(set(error.args[1]))
-    return []
-
-
-def _cycle_through(start: str, after: Mapping[str, list[_Step]]) -> tuple[Atom, ...]:
-    """Return the atoms along a shortest way from a name back to itself, breadth first."""
-    came: dict[str, _Step] = {}
-    waiting = [start]
-    for name in waiting:
-        for step in after.get(name, ()):
-            if step.high not in came:
-                came[step.high] = step
-                waiting.append(step.high)
-            if step.high == start:
-                return tuple(reversed(list(_back(start, came))))
-    return ()
-
-
-def _back(start: str, came: Mapping[str, _Step]) -> Iterator[Atom]:
-    step = came[start]
-    yield step.atom
-    while step.low != start:
-        step = came[step.low]
-        yield step.atom
+def _signs(relation: str) -> tuple[int, int]:
+    if relation not in _SIGNS:
+        raise UnknownNameError("direction", relation, _SIGNS)
+    return _SIGNS[relation]

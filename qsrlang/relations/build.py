@@ -12,13 +12,15 @@ from qsrlang.language.parser import MAX_FINDINGS
 from qsrlang.language.silencing import unsilenced
 from qsrlang.language.source import Source
 from qsrlang.relations.anchoring import report_unanchored
-from qsrlang.relations.contexts import Circumstances
+from qsrlang.relations.consistency.reporting import contradictions
+from qsrlang.relations.contexts import Circumstances, circumstances_of
 from qsrlang.relations.graph import RelationGraph
 from qsrlang.relations.imports import NOTHING_OPENED, Library, read_library
 from qsrlang.relations.layers import Layer, build_layers, in_force
 from qsrlang.relations.symbols import Symbols
 
 ANYWHERE = Circumstances()
+MAX_CONTEXTS_CHECKED = 32
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,8 +54,25 @@ def build_graph(
     layers = build_layers(statements, symbols)
     report_unanchored(symbols)
     graph = _graph(layers, symbols, circumstances or ANYWHERE)
+    _report_contradictions(graph, layers, symbols)
     found = unsilenced((*library.diagnostics, *symbols.diagnostics))
     return Built(graph, _ordered(found, source), library, symbols, layers)
+
+
+def _report_contradictions(graph: RelationGraph, layers: tuple[Layer, ...], symbols: Symbols) -> None:
+    """Report what cannot hold together in a graph, and in each context, the first MAX_CONTEXTS_CHECKED of them.
+
+    Where there are errors, that may follow from them.
+    """
+    if any(finding.is_error for finding in symbols.diagnostics):
+        return
+    symbols.diagnostics += list(contradictions(graph, symbols.diagnostics))
+    contexts = [layer.context for layer in layers if layer.context is not None]
+    for context in contexts[:MAX_CONTEXTS_CHECKED]:
+        circumstances = circumstances_of(context)
+        if circumstances is not None:
+            inside = _graph(layers, symbols, circumstances)
+            symbols.diagnostics += list(contradictions(inside, symbols.diagnostics, context.span))
 
 
 def _ordered(found: tuple[Diagnostic, ...], source: Source) -> Diagnostics:

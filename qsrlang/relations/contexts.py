@@ -31,6 +31,17 @@ class Circumstances:
         return cls(asked.room.text if asked.room else None, weekend, asked.time)
 
 
+def circumstances_of(context: Context) -> Circumstances | None:
+    """Return circumstances in which a context matches; None where its conditions exclude each other."""
+    if not compatible(context.conditions):
+        return None
+    rooms = (one.name.text for one in context.conditions if isinstance(one, Room))
+    days = (one.days == "weekend" for one in context.conditions if isinstance(one, Days))
+    periods = [minutes_of(one) for one in context.conditions if isinstance(one, Period)]
+    minutes = min(frozenset.intersection(*periods)) if periods else None
+    return Circumstances(next(rooms, None), next(days, None), minutes)
+
+
 def matches(context: Context, circumstances: Circumstances) -> bool:
     """Return whether all conditions of a context hold."""
     return all(_holds(condition, circumstances) for condition in context.conditions)

@@ -8,10 +8,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import islice, product
 
-from qsrlang.language.diagnostics import Label, Severity
+from qsrlang.language.diagnostics import Label
 from qsrlang.language.statements import Scene
 from qsrlang.language.syntax import And, Atom, Fit, Formula, Frame, Name, Node, Not, Or, Role, atoms_of
-from qsrlang.relations.algebra import conflict
 from qsrlang.relations.calculus import (
     MAX_CONJUNCTIONS,
     NoOpposite,
@@ -19,6 +18,9 @@ from qsrlang.relations.calculus import (
     TooManyConjunctions,
     conjunctions,
 )
+from qsrlang.relations.consistency.claims import Claim, Option, facts_of
+from qsrlang.relations.consistency.orders import contradiction
+from qsrlang.relations.consistency.reporting import contradicting
 from qsrlang.relations.graph import AtomicRelation, Constraint, Statement
 from qsrlang.relations.symbols import Symbols
 
@@ -92,14 +94,11 @@ def with_roles(formula: Formula, roles: Mapping[str, Role]) -> Formula:
 
 def _warn_of_conflict(disjuncts: tuple[tuple[Atom, ...], ...], symbols: Symbols) -> None:
     """Report a formula all of whose alternatives contradict themselves, by the first one's shortest contradiction."""
-    conflicts = [conflict(atoms, symbols.relations) for atoms in disjuncts]
-    if not all(conflicts):
-        return
-    first, *others = sorted(conflicts[0], key=lambda atom: atom.span.start)
-    labels = tuple(Label(atom.span, "nor this one, together") for atom in others)
-    message = f"{len(others) + 1} atoms contradict each other"
-    help_text = "each could hold without one of the others; relax or remove one of them"
-    symbols.report("Q515", message, first, "this one cannot hold", help_text, labels, Severity.WARNING)
+    alternatives = [facts_of(atoms, symbols.relations) for atoms in disjuncts]
+    conflicts = [contradiction(facts) for facts in alternatives]
+    if all(conflicts):
+        claim = Claim((Option(1.0, alternatives[0]),))
+        symbols.diagnostics.append(contradicting(conflicts[0], (claim,), symbols.relations))
 
 
 def _report_no_opposite(atom: Atom, symbols: Symbols) -> None:
@@ -117,7 +116,7 @@ def _terms(
     for atom in atoms:
         relation = symbols.relations[atom.relation.text]
         terms = relation.terms if split else ((1.0, relation),)
-        choices.append([(share, (atom, AtomicRelation(term, atom.frame))) for share, term in terms])
+        choices.append([(share, (atom, AtomicRelation(term, atom.frame, atom))) for share, term in terms])
     for combination in islice(product(*choices), MAX_CONJUNCTIONS + 1):
         yield math.prod(share for share, _ in combination), tuple(related for _, related in combination)
 

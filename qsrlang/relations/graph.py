@@ -9,7 +9,7 @@ from enum import IntEnum
 from typing import TypeAlias
 
 from qsrlang.language.source import Span
-from qsrlang.language.syntax import Fit, Formula, Frame
+from qsrlang.language.syntax import Atom, Fit, Formula, Frame
 from qsrlang.relations.calculus import Relation
 
 
@@ -63,10 +63,11 @@ class Statement:
 
 @dataclass(frozen=True, slots=True)
 class AtomicRelation:
-    """A relation in a frame of reference."""
+    """A relation in a frame of reference; `atom` is where it was written."""
 
     relation: Relation
     frame: Frame
+    atom: Atom | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)

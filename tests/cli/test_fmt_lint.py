@@ -154,3 +154,17 @@ def test_lint_needs_a_file(qsr_command):
     code, _, errors = qsr_command("lint")
     assert code == 2
     assert "name a file" in errors
+
+
+def test_lint_knows_what_a_viewer_sees(qsr_command, file):
+    path = file("dynamic Cup.\nstatic Armchair { front: yes }.\nobserve behind-of(Cup, Armchair).\n")
+    stands = ("--landmark", "old : Armchair at (0 m, 0 m) facing -90 deg")
+    assert qsr_command("lint", path, *stands, "--viewer", "0 m, -2 m")[0] == 0
+    code, shown, _ = qsr_command("lint", path, *stands, "--viewer", "0 m, 2 m")
+    assert code == 1
+    assert "warning[Q514]: 'behind-of' of 'old' is 180 deg off" in shown
+    code, _, errors = qsr_command(
+        "lint", path, "--landmark", "x : Sofa at (0 m, 0 m)", "--viewer", "0 m, 2 m"
+    )
+    assert code == 2
+    assert "Sofa" in errors

@@ -9,8 +9,10 @@ from hypothesis import strategies as st
 import qsrlang as qsr
 from qsrlang.language.source import Source
 from qsrlang.language.syntax import And
-from qsrlang.relations.algebra import compose, conflict, converse, neighbours
+from qsrlang.relations.algebra import compose, converse, neighbours
 from qsrlang.relations.build import build_graph
+from qsrlang.relations.consistency.claims import facts_of
+from qsrlang.relations.consistency.orders import contradiction
 from qsrlang.relations.qualify import DIRECTIONS, TPCC, UNDEFINED, direction_of, qualify
 
 AXES = {"behind-of": 0, "left-of": 1, "in-front-of": 2, "right-of": 3}
@@ -23,6 +25,11 @@ FIGURE_2 = (
 def relation_of(offset):
     """The quarter in which an offset lies, away from the diagonals."""
     return DIRECTIONS[round(math.atan2(offset[1], offset[0]) / (math.pi / 2)) % 4]
+
+
+def conflict(atoms, relations):
+    """The atoms of a shortest contradiction."""
+    return tuple(fact.atom for fact in contradiction(facts_of(atoms, relations)))
 
 
 def relations():
@@ -209,3 +216,25 @@ def test_odd_triples():
         qualify(np.zeros(3), np.zeros(3), np.zeros(3))
     with pytest.raises(qsr.ValueRangeError, match="shape"):
         qualify(np.zeros((2, 2)), np.zeros((3, 2)), np.zeros(2))
+
+
+def test_a_rounding_error_behind_the_relatum_is_straight_behind():
+    """Equation 1 wrapped in floating point: -1e-16 + 2 pi rounds to 2 pi, which is no sector of a table of sectors."""
+    origin, relatum = np.array([0.0, 0.0]), np.array([1.0, 0.0])
+    for side in (-1e-16, 0.0, 1e-16, -1e-12, 1e-12):
+        assert TPCC[qualify(origin, relatum, np.array([1.5, side]))] == "csb"
+        assert TPCC[qualify(origin, relatum, np.array([3.5, side]))] == "dsb"
+        assert 0.0 <= qsr.relative_angle(origin, relatum, np.array([1.5, side])) < 2.0 * math.pi
+    beside = [TPCC[qualify(origin, relatum, np.array([1.5, side]))] for side in (1e-6, -1e-6)]
+    assert beside == ["clb", "crb"]
+
+
+@given(grid, grid)
+def test_degenerate_triples_have_relations_of_their_own(one, other):
+    a, b = np.array(one, dtype=float), np.array(other, dtype=float)
+    assert TPCC[qualify(a, a, a)] == "tri"
+    if one != other:
+        assert TPCC[qualify(a, b, b)] == "sam"
+        assert TPCC[qualify(a, a, b)] == "dou"
+        assert TPCC[qualify(a, b, a)] == "dsf"
+    assert direction_of(np.array([TPCC.index(name) for name in ("sam", "dou", "tri")])).tolist() == [-1] * 3

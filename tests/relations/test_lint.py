@@ -1,3 +1,5 @@
+import math
+
 import pytest
 
 from qsrlang.language.codes import CODES
@@ -6,6 +8,7 @@ from qsrlang.language.fixing import edited
 from qsrlang.language.parser import parse
 from qsrlang.language.source import Source, read_source
 from qsrlang.relations.build import build_graph
+from qsrlang.relations.graph import Landmark
 from qsrlang.relations.imports import find_knowledge, shipped_knowledge
 from qsrlang.relations.imports import read_source as read_shipped
 from qsrlang.relations.linting.lint import RULES, lint
@@ -13,10 +16,10 @@ from qsrlang.relations.linting.lint import RULES, lint
 DECLARED = "dynamic Cup, Plate, Spoon.\nstatic Armchair { front: yes }, Desk.\n"
 
 
-def findings(text, path=None):
+def findings(text, path=None, viewer=None, landmarks=()):
     source = Source("<text>", text, path)
     built = build_graph(source)
-    return lint(built, source)
+    return lint(built, source, viewer, landmarks)
 
 
 def found(text, path=None):
@@ -192,6 +195,33 @@ def test_an_atom_is_implied_by_itself_its_converse_and_by_symmetry(formula, impl
     assert found(claims(near, f"observe {formula}.")) == [("Q506", text) for text in implied]
 
 
+@pytest.mark.parametrize(
+    ("formula", "implied"),
+    [
+        ("left-of(Cup, Plate) ∧ left-of(Plate, Spoon) ∧ left-of(Cup, Spoon)", ["left-of(Cup, Spoon)"]),
+        ("left-of(Cup, Spoon) ∧ left-of(Plate, Spoon) ∧ left-of(Cup, Plate)", ["left-of(Cup, Spoon)"]),
+        ("left-of(Cup, Plate) ∧ right-of(Spoon, Plate) ∧ right-of(Spoon, Cup)", ["right-of(Spoon, Cup)"]),
+        ("left-of(Cup, Plate) ∧ behind-of(Plate, Spoon) ∧ left-of(Cup, Spoon)", []),
+        ("left-of(Cup, Plate) ∧ left-of(Plate, Spoon) ∧ left-of(Cup, Spoon) wrt absolute", []),
+        ("left-of(Cup, Plate) ∧ left-of(Plate, Spoon) ∧ left-of(Spoon, Cup)", []),
+        ("left-of(Cup, Plate) ∧ left-of(Plate, Spoon) ∧ close-to(Cup, Spoon)", []),
+    ],
+)
+def test_a_direction_is_implied_by_a_chain_of_others_in_its_frame(formula, implied):
+    assert found(claims(f"observe {formula}.")) == [("Q506", text) for text in implied]
+
+
+def test_a_chain_must_lead_there_in_both_orders_and_all_of_it_is_shown():
+    square = "left-of(Cup, A) ∧ behind-of(A, Plate) ∧ behind-of(Cup, B) ∧ left-of(B, Plate)"
+    declared = "dynamic Cup, Plate, A, B.\n"
+    sides = findings(f"{declared}observe {square} ∧ left-of(Cup, Plate).")
+    assert [one.span.text for one in sides if one.code == "Q506"] == []
+    row = "left-of(Cup, A) ∧ left-of(A, B) ∧ left-of(B, Plate) ∧ left-of(Cup, Plate)"
+    (finding,) = findings(f"{declared}observe {row}.")
+    assert [label.span.text for label in finding.labels] == row.split(" ∧ ")[:3]
+    assert edited(f"{declared}observe {row}.", finding.edits).endswith("left-of(B, Plate).")
+
+
 def test_an_implied_atom_is_shown_beside_the_other():
     (finding,) = findings("scene(one: Cup, two: Cup) ⇔ left-of(one: Cup, two) ∧ left-of(one, two: Cup).")
     assert [label.span.text for label in finding.labels] == ["left-of(one: Cup, two)"]
@@ -254,6 +284,62 @@ def test_a_landmark_and_a_role_have_the_front_of_their_class():
         ("Q507", "left-of(Cup, old)"),
         ("Q507", "right-of(Cup, mine)"),
     ]
+
+
+# Q514
+
+CHAIR = "landmark old : Armchair at (1 m, 1 m) facing 0 deg.\n"
+
+
+@pytest.mark.parametrize(
+    ("atom", "degrees", "apart"),
+    [
+        ("behind-of(Cup, Armchair)", 0, None),
+        ("behind-of(Cup, Armchair)", 44, None),
+        ("behind-of(Cup, Armchair)", 46, 46),
+        ("in-front-of(Cup, old)", 180, 180),
+        ("left-of(Cup, Armchair)", 0, 180),
+        ("left-of(Cup, Armchair)", 180, None),
+        ("left-of(Cup, Armchair)", 200, None),
+        ("left-of(Cup, Armchair) wrt relative", 0, None),
+        ("left-of(Cup, Armchair) wrt intrinsic", 0, None),
+        ("left-of(Cup, Desk)", 0, None),
+        ("close-to(Cup, Armchair)", 90, None),
+        ("beside(Cup, Armchair)", 0, None),
+        ("beside(Cup, Armchair)", 90, 90),
+    ],
+)
+def test_a_viewer_who_goes_round_a_thing_sees_other_sides_than_its_own(atom, degrees, apart):
+    beside = "relation beside(a, b) { angle: mix(normal(90 deg, 15 deg), normal(-90 deg, 15 deg)) }.\n"
+    angle = math.radians(degrees)
+    viewer = (1.0 + 2.0 * math.cos(angle), 1.0 + 2.0 * math.sin(angle))
+    told = [
+        one
+        for one in findings(claims(CHAIR, beside, f"observe {atom}."), viewer=viewer)
+        if one.code != "Q503"
+    ]
+    assert [one.code for one in told] == ([] if apart is None else ["Q514"])
+    assert all(f"{apart} deg off" in one.message for one in told)
+
+
+def test_a_side_that_the_viewer_does_not_see_is_told_in_both_readings_with_an_edit():
+    text = claims(CHAIR, "observe left-of(Cup, Armchair).")
+    (finding,) = (one for one in findings(text, viewer=(4.0, 1.0)) if one.code == "Q514")
+    assert finding.note == "for the viewer at -90 deg, by its front at 90 deg on the map"
+    assert "'wrt relative'" in finding.help and "'wrt intrinsic'" in finding.help
+    assert [label.span.text for label in finding.labels] == ["old"]
+    mended_text = edited(text, finding.edits)
+    assert {one.code for one in findings(mended_text, viewer=(4.0, 1.0))} == {"Q503"}
+
+
+def test_without_a_viewer_or_a_heading_the_frame_stays_ambiguous():
+    statement = "observe left-of(Cup, Armchair)."
+    assert found(claims(CHAIR, statement)) == [("Q507", "left-of(Cup, Armchair)")]
+    headless = claims("landmark old : Armchair at (1 m, 1 m).", statement)
+    assert "Q507" in [one.code for one in findings(headless, viewer=(4.0, 1.0))]
+    further = (Landmark("new", "Armchair", 0.0, 0.0, None, 0.0),)
+    codes = [one.code for one in findings(claims(statement), viewer=(4.0, 0.0), landmarks=further)]
+    assert "Q514" in codes and "Q507" not in codes
 
 
 # Q508

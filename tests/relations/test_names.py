@@ -143,13 +143,13 @@ def test_what_a_broken_definition_would_define_is_not_reported_again():
 
 def test_cyclic_anchoring_shows_the_cycle():
     findings = built(
-        "dynamic A, B, C.\nobserve left-of(A, B).\nobserve left-of(B, C).\nobserve left-of(C, A)."
+        "dynamic A, B, C.\nobserve left-of(A, B).\nobserve left-of(B, C).\nobserve right-of(C, A)."
     ).diagnostics
     (finding,) = findings
     assert (finding.code, finding.span.line) == ("Q513", 2)
     assert [label.span.line for label in finding.labels] == [3, 4]
     assert not finding.is_error
-    loop = "dynamic A, B. observe left-of(A, B). observe left-of(B, A). "
+    loop = "dynamic A, B. observe left-of(A, B). observe right-of(B, A). "
     assert codes(loop) == ["Q513"]
     assert codes(loop + "static M. observe left-of(A, M).") == []
     assert "Q513" not in codes(loop + "landmark b : B at (0 m, 0 m) facing 0 deg.")

@@ -84,7 +84,9 @@ class Shell:
     def findings(self) -> tuple[Diagnostic, ...]:
         """Return all that can be said of what is known: warnings, information and lint; what was typed comes first."""
         built, source = self.session.built, self.session.source()
-        found = (*built.diagnostics, *lint(built, source))
+        viewer = self.session.viewer
+        place = None if viewer is None else (viewer.x, viewer.y)
+        found = (*built.diagnostics, *lint(built, source, place))
         return tuple(sorted(found, key=lambda one: (one.span.source is not source, one.span.start)))
 
     def tell_check(self, findings: tuple[Diagnostic, ...]) -> None:

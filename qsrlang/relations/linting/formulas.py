@@ -1,28 +1,25 @@
-"""Rules about formulas: atoms that others imply, frames that are ambiguous, disjunctions where a belief was meant."""
+"""Rules about formulas: atoms that others imply, disjunctions where a belief was meant."""
 
 from __future__ import annotations
 
-import math
 import re
-from collections import defaultdict
 from collections.abc import Iterator
+from dataclasses import replace
 
 from qsrlang.language.diagnostics import Diagnostic, Edit, Label
 from qsrlang.language.printing.printer import print_formula
 from qsrlang.language.source import Span
 from qsrlang.language.statements import Believe, Observe, Require, Statement
-from qsrlang.language.syntax import And, Atom, Formula, Frame, Normal, Not, Or, Uniform, atoms_of
+from qsrlang.language.syntax import And, Atom, Formula, Frame, Not, Or, atoms_of
+from qsrlang.relations.algebra import derivation
 from qsrlang.relations.calculus import Relation
 from qsrlang.relations.linting.linted import Linted, warning, without_comments
 
-TURN = 2.0 * math.pi
 _CONNECTIVE = re.compile(r"\s*(?:∧|&|and)\s*")
-_DECIMALS = 9
-_SLACK = 1e-9
 
 
 def implied_atoms(linted: Linted) -> Iterator[Diagnostic]:
-    """Atoms of a conjunction that say what another one says: the same, or its converse the other way round."""
+    """Atoms of a conjunction that others imply: one that says the same, or directions of one frame along a chain."""
     for _, formula in linted.formulas():
         for part in _unnegated(formula):
             if isinstance(part, And):
@@ -38,16 +35,42 @@ def _implied(conjunction: And, linted: Linted) -> Iterator[Diagnostic]:
         first = next((said[way] for way in ways if way in said), None)
         if first is None:
             said[ways[0]] = atom
-            continue
-        yield warning(
-            "Q506",
-            f"'{atom.span.text}' says nothing new",
-            atom.span,
-            "implied by the other atom",
-            "leave one of the two out",
-            labels=(Label(first.span, "this says the same"),),
-            edits=_without(conjunction, number),
-        )
+        else:
+            yield _saying_nothing_new(conjunction, number, (first,))
+    yield from _derived(conjunction, list(said.values()))
+
+
+def _derived(conjunction: And, atoms: list[Atom]) -> Iterator[Diagnostic]:
+    """Yield a finding for each direction that follows from two or more of the others; the last ones go first."""
+    pairs = [atom for atom in atoms if len({one.text for one in atom.arguments}) == len(atom.arguments) == 2]
+    for atom in reversed(pairs):
+        others = [one for one in pairs if one is not atom]
+        chain = derivation(others, atom)
+        if chain and not any(derivation(others, one) for one in _turned(atom)):
+            pairs = others
+            number = next(n for n, part in enumerate(conjunction.parts) if part is atom)
+            yield _saying_nothing_new(conjunction, number, chain)
+
+
+def _turned(atom: Atom) -> Iterator[Atom]:
+    """Yield the atom that says the opposite: if that follows as well, the others contradict each other."""
+    yield replace(atom, arguments=atom.arguments[::-1])
+
+
+def _saying_nothing_new(conjunction: And, number: int, others: tuple[Atom, ...]) -> Diagnostic:
+    atom = conjunction.parts[number]
+    alone = len(others) == 1
+    return warning(
+        "Q506",
+        f"'{atom.span.text}' says nothing new",
+        atom.span,
+        "implied by the other atom" if alone else f"implied by the {len(others)} others",
+        "leave one of the two out"
+        if alone
+        else "leave it out; counted beside them, it narrows the answer twice",
+        labels=tuple(Label(one.span, "this says the same" if alone else "from this") for one in others),
+        edits=_without(conjunction, number),
+    )
 
 
 def _ways_to_say(atom: Atom, relation: Relation | None) -> list[tuple[object, ...]]:
@@ -71,63 +94,6 @@ def _without(conjunction: And, number: int) -> tuple[Edit, ...]:
     place = Span(part.span.source, before.span.end, part.span.end)
     between = place.source.text[before.span.end : part.span.start]
     return without_comments(Edit(place, "")) if _CONNECTIVE.fullmatch(between) else ()
-
-
-def ambiguous_frames(linted: Linted) -> Iterator[Diagnostic]:
-    """Atoms without `wrt` that mean something else by the front of their relatum than as seen by a viewer."""
-    for _, formula in linted.formulas():
-        for atom in atoms_of(formula):
-            kind = _kind_with_a_front(atom, linted)
-            if kind is not None:
-                yield _ambiguous(atom, kind, linted)
-
-
-def _kind_with_a_front(atom: Atom, linted: Linted) -> str | None:
-    """Return the class of the relatum where its front makes the atom ambiguous."""
-    symbols = linted.symbols
-    relation = symbols.relations.get(atom.relation.text)
-    if atom.framed or relation is None or not len(atom.arguments) == relation.arity == 2:
-        return None
-    relatum = atom.arguments[1].text
-    kind = symbols.classes.get(symbols.class_of(symbols.roles.get(relatum, relatum)))
-    return kind.name if kind and kind.front and not _is_mirrored(relation) else None
-
-
-def _ambiguous(atom: Atom, kind: str, linted: Linted) -> Diagnostic:
-    declared = linted.symbols.places.get(("class", kind))
-    labels = (Label(declared.span, "declared here with its front"),) if declared else ()
-    return warning(
-        "Q507",
-        f"'{atom.relation}' is ambiguous, for '{kind}' has a front",
-        atom.span,
-        "without 'wrt' it is as the viewer sees it",
-        f"write 'wrt relative' for that, or 'wrt intrinsic' for the {kind}'s own side",
-        labels=labels,
-        edits=(Edit(Span(linted.source, atom.span.end, atom.span.end), " wrt relative"),),
-    )
-
-
-def _is_mirrored(relation: Relation) -> bool:
-    """Whether a relation means the same with left and right swapped."""
-    shares: dict[tuple[float, float], float] = defaultdict(float)
-    mirrored: dict[tuple[float, float], float] = defaultdict(float)
-    for share, term in relation.terms:
-        match term.angle:
-            case Normal(mean=mean, deviation=deviation):
-                shares[_turned(mean.value), deviation.value] += share
-                mirrored[_turned(-mean.value), deviation.value] += share
-            case Uniform(low=low, high=high) if high.value - low.value < TURN:
-                middle, width = (low.value + high.value) / 2.0, high.value - low.value
-                shares[_turned(middle), width] += share
-                mirrored[_turned(-middle), width] += share
-    return shares.keys() == mirrored.keys() and all(
-        abs(shares[key] - mirrored[key]) < _SLACK for key in shares
-    )
-
-
-def _turned(angle: float) -> float:
-    """Return an angle within one turn, rounded so that equal angles are equal."""
-    return round(round(angle / TURN, _DECIMALS) % 1.0, _DECIMALS)
 
 
 def disjunctions(linted: Linted) -> Iterator[Diagnostic]:

@@ -9,7 +9,9 @@ from qsrlang.language.diagnostics import Diagnostic
 from qsrlang.language.silencing import unsilenced
 from qsrlang.language.source import Source
 from qsrlang.relations.build import Built
-from qsrlang.relations.linting.formulas import ambiguous_frames, disjunctions, implied_atoms
+from qsrlang.relations.graph import Landmark
+from qsrlang.relations.linting.formulas import disjunctions, implied_atoms
+from qsrlang.relations.linting.frames import ambiguous_frames, disagreeing_frames
 from qsrlang.relations.linting.linted import Linted
 from qsrlang.relations.linting.names import uncapitalised_classes, unplaced_classes, unused_imports
 from qsrlang.relations.linting.weights import impossible_contexts, missing_shares, zero_weights
@@ -41,14 +43,21 @@ RULES = (
         disjunctions,
     ),
     Rule("Q511", "a capital tells classes from landmarks, relations and roles", uncapitalised_classes),
+    Rule("Q514", "the viewer sees another side than the one by the front of the thing", disagreeing_frames),
 )
 
 
-def lint(built: Built, source: Source) -> tuple[Diagnostic, ...]:
+def lint(
+    built: Built,
+    source: Source,
+    viewer: tuple[float, float] | None = None,
+    landmarks: tuple[Landmark, ...] = (),
+) -> tuple[Diagnostic, ...]:
     """Return what the rules find in one source of what was built, in the order of the text.
 
+    Frames are judged for a viewer at (x, y) [m], if one is given, and for further landmarks beside those of the text.
     A comment `# allow Q503` on the line of a finding, or alone on the line before, silences it.
     """
-    linted = Linted.of(built, source)
+    linted = Linted.of(built, source, viewer, landmarks)
     found = [finding for rule in RULES for finding in rule.find(linted)]
     return unsilenced(sorted(found, key=lambda finding: (finding.span.start, finding.code)))

@@ -13,28 +13,42 @@ from qsrlang.language.statements import Believe, Document, Elsewhere, Observe, R
 from qsrlang.language.syntax import Formula, Role
 from qsrlang.relations.build import Built
 from qsrlang.relations.evidence import with_roles
+from qsrlang.relations.graph import Landmark
 from qsrlang.relations.symbols import Symbols, flat
 
 
 @dataclass(frozen=True, slots=True)
 class Linted:
-    """A source with its document and all that was built from it."""
+    """A source with its document and all that was built from it, the viewer (x, y) [m] and further landmarks."""
 
     source: Source
     document: Document
     built: Built
+    viewer: tuple[float, float] | None = None
+    further: tuple[Landmark, ...] = ()
 
     @classmethod
-    def of(cls, built: Built, source: Source) -> Linted:
+    def of(
+        cls,
+        built: Built,
+        source: Source,
+        viewer: tuple[float, float] | None = None,
+        further: tuple[Landmark, ...] = (),
+    ) -> Linted:
         """Return a source of a library; of one that is not in it, nothing is seen."""
         documents = zip(built.library.sources, built.library.documents, strict=True)
         own = (document for one, document in documents if one is source)
-        return cls(source, next(own, Document(())), built)
+        return cls(source, next(own, Document(())), built, viewer, further)
 
     @property
     def symbols(self) -> Symbols:
         """What the names of the library stand for."""
         return self.built.symbols
+
+    @property
+    def landmarks(self) -> Iterable[Landmark]:
+        """The landmarks of the library and the further ones, which stand in the place of those of the same name."""
+        return {**self.symbols.landmarks, **{one.name: one for one in self.further}}.values()
 
     @property
     def is_broken(self) -> bool:

@@ -1,0 +1,1 @@
+"""Whether knowledge is consistent: graph -> claims -> search by two theories -> minimal conflicts -> relaxations."""
