@@ -16,13 +16,12 @@ def print_answer(answer: qsr.Answer, console: Console, title: str) -> None:
     """Print an answer: as a table, with the numbers of the statements behind each component, or as a tree."""
     if isinstance(answer, qsr.Where):
         _print_where(answer, console, title)
-    elif isinstance(answer, qsr.Explanation):
-        for line in answer.lines():
-            console.print(line, highlight=False, markup=False, soft_wrap=True)
+    elif isinstance(answer, qsr.Explanation | qsr.Consistency):
+        console.print(str(answer), highlight=False, markup=False, soft_wrap=True)
     else:
         console.print(title, markup=False, highlight=False, soft_wrap=True)
         console.print(table_of(answer))
-    if answer.assumed:
+    if not isinstance(answer, qsr.Consistency) and answer.assumed:
         assumed = f"assumed: {'; '.join(answer.assumed)}"
         good = "" if answer.draws is None else f" (as good as {answer.draws:.0f} independent draws)"
         console.print(assumed + good, highlight=False, markup=False, soft_wrap=True)

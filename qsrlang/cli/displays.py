@@ -12,7 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 import qsrlang as qsr
-from qsrlang.cli.answers import answer_table, frame_line, probability_table, reasons
+from qsrlang.cli.answers import answer_table, frame_line, probability_table, reasons, table_of
 from qsrlang.cli.narration import outcome_table, steps_table
 from qsrlang.cli.shell.listings import class_table, graph_table, landmark_table
 from qsrlang.experiments.tables import comparison_table
@@ -59,6 +59,16 @@ def probability_html(answer: qsr.Probability) -> str:
     return f"<p><b>prob {escape(answer.formula)}</b></p>{table_html(probability_table(answer))}{lines}"
 
 
+def rows_html(answer: qsr.LandmarkRanking | qsr.SceneSamples) -> str:
+    """Return a ranking of landmarks, or where things are in joint scenes."""
+    return table_html(table_of(answer))
+
+
+def text_html(answer: qsr.Explanation | qsr.Consistency) -> str:
+    """Return a proof tree, or what contradicts what, as it is printed in a terminal."""
+    return _block(str(answer))
+
+
 def story_html(story: qsr.SearchStory) -> str:
     """Return a search: how it ended, its steps, and a picture of the last one."""
     return (
@@ -102,7 +112,7 @@ def picture_html(figure: Figure) -> str:
     return f'<img style="width: {PICTURE_WIDTH}px" src="data:image/png;base64,{content}">'
 
 
-def _assumed(answer: qsr.Answer) -> list[str]:
+def _assumed(answer: qsr.Where | qsr.Probability | qsr.SceneSamples) -> list[str]:
     return [f"assumed: {'; '.join(answer.assumed)}"] if answer.assumed else []
 
 

@@ -14,9 +14,11 @@ from qsrlang.cli.displays import (
     comparison_text,
     knowledge_html,
     probability_html,
+    rows_html,
     story_html,
     story_text,
     summary,
+    text_html,
     where_html,
 )
 from qsrlang.errors import QSRError, UnknownNameError, ValueRangeError
@@ -98,6 +100,10 @@ class Notebook:
             ("qsrlang.mixtures.queries", "KnowledgeBase"): (summary, knowledge_html),
             ("qsrlang.mixtures.answers", "Where"): (str, self._where_html),
             ("qsrlang.mixtures.probability", "Probability"): (str, probability_html),
+            ("qsrlang.mixtures.explanation", "Explanation"): (str, text_html),
+            ("qsrlang.relations.consistency.conflicts", "Consistency"): (str, text_html),
+            ("qsrlang.mixtures.information", "LandmarkRanking"): (str, rows_html),
+            ("qsrlang.mixtures.scenes", "SceneSamples"): (str, rows_html),
             ("qsrlang.experiments.stories", "SearchStory"): (story_text, story_html),
             ("qsrlang.experiments.summaries", "Comparison"): (comparison_text, comparison_html),
         }

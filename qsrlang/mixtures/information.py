@@ -168,12 +168,12 @@ def _log_density(
 ) -> FloatArray:
     """Return the log density (D,) of draws in some columns, among worlds (M,) that place the same of those things."""
     things = slice(columns.start // 2, columns.stop // 2)
-    same = (present[:, None, things] ^ ~has[None, :, things]).all(axis=2)
+    same: BoolArray = np.all(present[:, None, things] == has[None, :, things], axis=2)
     off = points[:, None, columns] - means[None, :, columns]
     block = covariances[:, columns, columns]
     solved = np.einsum("mij,dmj->dmi", np.linalg.inv(block), off)
     logs = -0.5 * np.einsum("dmi,dmi->dm", off, solved) - 0.5 * np.linalg.slogdet(2.0 * math.pi * block)[1]
-    there = present[:, things].any(axis=1)
+    there: BoolArray = np.any(present[:, things], axis=1)
     logs = np.where(there[:, None], logs, 0.0)
     return np.asarray(logsumexp(np.where(same, logs, -np.inf), b=weights, axis=1))
 

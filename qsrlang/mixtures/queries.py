@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
@@ -25,18 +24,20 @@ from qsrlang.mixtures.inference import Bounds, Placed, in_frame, place_assuming,
 from qsrlang.mixtures.information import LandmarkRanking, rank_landmarks
 from qsrlang.mixtures.manner import Manner
 from qsrlang.mixtures.names import check_atom, check_object, check_question, drawn_names
+from qsrlang.mixtures.poses import Poses, landmarks_at
 from qsrlang.mixtures.probability import Probability, Proved, prove
 from qsrlang.mixtures.reduction import MAX_COMPONENTS
 from qsrlang.mixtures.scenes import SceneSamples, sample_scenes
 from qsrlang.mixtures.worlds import MAX_WORLDS
 from qsrlang.relations.build import ANYWHERE, Built, build_graph
+from qsrlang.relations.consistency.conflicts import Consistency
+from qsrlang.relations.consistency.deciding import find_conflicts
 from qsrlang.relations.contexts import Circumstances
 from qsrlang.relations.graph import Landmark, RelationGraph
 from qsrlang.relations.imports import find_knowledge, read_source
 from qsrlang.relations.values import landmark_value
 
-Answer: TypeAlias = Where | Probability | Explanation | LandmarkRanking | SceneSamples
-Poses: TypeAlias = Mapping[str, Pose2 | Sequence[Pose2]]
+Answer: TypeAlias = Where | Probability | Explanation | LandmarkRanking | SceneSamples | Consistency
 DEFAULT_SAMPLES = 10_000
 
 
@@ -112,7 +113,7 @@ class KnowledgeBase:
         MissingFacingError and ImpossibleConditionError.
         """
         how = Manner(engine, samples, rng, viewer, Bounds(max_worlds, max_components))
-        graph = self.with_landmarks(*_instances(landmarks or {}, self.graph)).graph
+        graph = self.with_landmarks(*landmarks_at(landmarks or {}, self.graph)).graph
         return self._placed(graph, target, wrt, given, how).answer
 
     def prob(
@@ -165,6 +166,10 @@ class KnowledgeBase:
         """
         check_object(target, self.graph)
         return rank_landmarks(self.graph, target, viewer, rng or np.random.default_rng(0))
+
+    def check(self) -> Consistency:
+        """Return whether all that is known can hold together, and which few atoms contradict each other if not."""
+        return find_conflicts(self.graph)
 
     def sample(
         self,
@@ -221,6 +226,8 @@ class KnowledgeBase:
                 return known.explain(about, wrt=wrt, given=given, viewer=viewer, samples=samples, rng=rng)
             case questions.Landmarks(target=target):
                 return known.rank_landmarks(target.text, viewer=viewer, rng=rng)
+            case questions.Check():
+                return known.check()
             case questions.Sample(subject=subject, count=count):
                 name = subject.text if subject else None
                 return known.sample(name, count, given=given, viewer=viewer, rng=rng)
@@ -290,10 +297,3 @@ def _refined(circumstances: Circumstances, asked: Circumstances) -> Circumstance
 @lru_cache(maxsize=256)
 def _parsed(formula: str) -> Formula:
     return parse_formula(formula)
-
-
-def _instances(poses: Poses, graph: RelationGraph) -> Iterator[Landmark]:
-    for kind, given in poses.items():
-        for number, pose in enumerate([given] if isinstance(given, Pose2) else given, start=1):
-            name = kind if kind in graph.roles else f"{kind}-{number}"
-            yield Landmark(name, graph.roles.get(kind, kind), pose.x, pose.y, heading=pose.yaw)
