@@ -3,19 +3,24 @@
 from dataclasses import dataclass
 
 import numpy as np
-from oracle import consult
+from generated_knowledge import Generated
+from oracle import Verdict, consult
+from scipy.spatial import cKDTree
 from scipy.spatial.distance import cdist
+from scipy.special import digamma
 
 import qsrlang as qsr
 
 LEAST_WEIGHT = 0.01
+NEIGHBOURS = 3
 
 
 @dataclass
 class Gap:
     """One comparison. `z` are weights, means and covariances off the oracle's, in its standard errors, and `events` so
     are probabilities; the errors as such are those of means in deviations, of deviations as a ratio, of weights and of
-    probabilities; `energy` is the energy distance of the mixture from the oracle's draws, from 0 (equal) to 1.
+    probabilities; `energy` is the energy distance of the mixture from the oracle's draws, from 0 (equal) to 1; `kl` is
+    the Kullback-Leibler divergence of the mixture from the truth [nat].
     """
 
     z: np.ndarray
@@ -25,22 +30,52 @@ class Gap:
     prob: np.ndarray
     events: np.ndarray
     energy: float
+    kl: float
     draws: float
+
+
+@dataclass
+class Judged:
+    """A base, what it knows, what the oracle found of its target, and of each of its events (value, error)."""
+
+    base: Generated
+    known: qsr.KnowledgeBase
+    verdict: Verdict
+    events: list
+
+    @property
+    def viewer(self):
+        return None if self.base.viewer is None else qsr.Pose2(*self.base.viewer)
 
 
 def compare(base, count=4000, draws=1000, prepare=lambda known: known):
     """Ask both engines; `prepare` may change what the engine under test knows."""
-    known = qsr.parse_knowledge(base.text)
-    viewer = None if base.viewer is None else qsr.Pose2(*base.viewer)
+    return gap(judge(base, count, draws), prepare)
+
+
+def judge(base, count, draws):
+    """Ask the oracle: of the target, and of each event by itself, since an event may tell of the target."""
+    judged = Judged(base, qsr.parse_knowledge(base.text), None, [])
     given = None if base.given is None else qsr.parse_formula(base.given)
     rng = np.random.default_rng([base.seed, 1])
-    verdict = consult(known.graph, base.target, (), given, viewer, count, rng, draws)
-    answer = prepare(known).where(base.target, viewer=viewer, given=base.given)
-    groups = _grouped(answer, verdict)
-    z, mean, ratio, weight = _moments(groups, verdict)
-    prob, events = _events(base, known, prepare(known), given, viewer, count, rng)
-    energy = energy_distance(answer.mixture.sample(draws, rng), verdict.points)
-    return Gap(z, mean, ratio, weight, prob, events, energy, verdict.draws)
+    graph, how = judged.known.graph, (given, judged.viewer, count, rng)
+    judged.verdict = consult(graph, base.target, (), *how, draws)
+    for event in base.events:
+        found = consult(graph, None, (qsr.parse_formula(event),), *how).events
+        judged.events.append((float(found.value[0]), float(found.error[0])))
+    return judged
+
+
+def gap(judged, prepare=lambda known: known):
+    """Return how far the engine is from the oracle."""
+    base, verdict, known = judged.base, judged.verdict, prepare(judged.known)
+    answer = known.where(base.target, viewer=judged.viewer, given=base.given)
+    z, mean, ratio, weight = _moments(_grouped(answer, verdict), verdict)
+    prob, events = _events(judged, known)
+    drawn = answer.mixture.sample(len(verdict.points), np.random.default_rng(base.seed))
+    energy = energy_distance(drawn, verdict.points)
+    kl = divergence(verdict.points, answer.mixture)
+    return Gap(z, mean, ratio, weight, prob, events, energy, kl, verdict.draws)
 
 
 def _grouped(answer, verdict):
@@ -90,15 +125,12 @@ def _score(value, measured, i, floor):
     return (value - measured.value[i]) / (measured.error[i] + floor)
 
 
-def _events(base, plain, known, given, viewer, count, rng):
+def _events(judged, known):
     errors, scores = [], []
-    for text in base.events:
-        event = qsr.parse_formula(text)
-        verdict = consult(plain.graph, None, (event,), given, viewer, count, rng)
-        answer = known.prob(text, base.given, viewer=viewer)
-        error = answer.value - float(verdict.events.value[0])
-        errors.append(abs(error))
-        scores.append(error / np.hypot(float(verdict.events.error[0]), answer.standard_error + 1e-4))
+    for event, (value, error) in zip(judged.base.events, judged.events, strict=True):
+        answer = known.prob(event, judged.base.given, viewer=judged.viewer)
+        errors.append(abs(answer.value - value))
+        scores.append((answer.value - value) / np.hypot(error, answer.standard_error + 1e-4))
     return np.array(errors), np.array(scores)
 
 
@@ -108,3 +140,14 @@ def energy_distance(points, others):
     n, m = len(points), len(others)
     within = cdist(points, points).sum() / (n * (n - 1)) + cdist(others, others).sum() / (m * (m - 1))
     return float((across - within) / across)
+
+
+def divergence(points, mixture):
+    """KL(truth || mixture) [nat] from draws of the truth: -h - E log q, h by nearest neighbours.
+
+    h = psi(n) - psi(k) + log pi + 2 E log r_k (Kozachenko and Leonenko 1987), r_k the distance to the k-th neighbour.
+    """
+    points = np.unique(points, axis=0)
+    reach = cKDTree(points).query(points, k=NEIGHBOURS + 1)[0][:, -1]
+    entropy = digamma(len(points)) - digamma(NEIGHBOURS) + np.log(np.pi) + 2.0 * np.log(reach).mean()
+    return float(-entropy - mixture.logpdf(points).mean())
