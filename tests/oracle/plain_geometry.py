@@ -54,10 +54,9 @@ def _to_the_line(start, room, speed):
 def angle_density(density, angles):
     """The density of an angle factor [1/rad]: a wrapped normal, uniform on an arc, or anywhere."""
     if isinstance(density, Normal):
-        z = [
-            (turned_back(angles - density.mean.value) + k * CIRCLE) / density.deviation.value
-            for k in range(-3, 4)
-        ]
+        turns = range(-3, 4) if density.deviation.value > 1.0 else (-1, 0, 1)
+        off = turned_back(angles - density.mean.value)
+        z = [(off + turn * CIRCLE) / density.deviation.value for turn in turns]
         return sum(np.exp(-0.5 * one**2) for one in z) / (density.deviation.value * math.sqrt(CIRCLE))
     if isinstance(density, Uniform):
         width = min(density.high.value - density.low.value, CIRCLE)

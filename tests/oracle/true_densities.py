@@ -19,7 +19,7 @@ from qsrlang.language.syntax import Dimension, Frame, Uniform
 SHORTEST_WAY = 1e-3
 NARROWEST = 1e-3
 DIRECTIONS = 64
-REDRAWS = 60
+TRIES = (1, 4, 100)
 
 
 @dataclass
@@ -198,25 +198,31 @@ def _polar_draws(scenes, constraint, table, rng):
     """
     theta, low, high = np.zeros((3, scenes.count))
     waiting = np.arange(scenes.count)
-    for _ in range(REDRAWS):
+    for tries in TRIES:
         some, top = scenes.some(waiting), table and table.some(waiting)
-        (first, hand, along), *others = _narrowest_first(_factors(some, constraint))
-        fresh = along + hand * angle_draws(first, some.count, rng)
-        near, far = (bound[:, 0] for bound in way(some, constraint, top, fresh[:, None]))
-        agreed = rng.random(some.count) < _agreement(others, fresh)
-        theta[waiting], low[waiting], high[waiting] = fresh, near, np.maximum(near, far)
-        waiting = waiting[~(agreed & (far > near))]
-        if len(waiting) == 0:
-            break
+        tried, near, far, kept = _tries(some, constraint, top, tries, rng)
+        chosen = np.arange(some.count), kept.argmax(axis=1)
+        theta[waiting], low[waiting] = tried[chosen], near[chosen]
+        high[waiting] = np.maximum(near[chosen], far[chosen])
+        waiting = waiting[~kept.any(axis=1)]
     return scenes.points[constraint.relatum] + rng.uniform(low, high)[:, None] * directions(theta)
 
 
+def _tries(scenes, constraint, table, tries, rng):
+    """Angles (P, tries), how near and far they let the referent be, and which of them may be kept."""
+    (first, hand, along), *others = _narrowest_first(_factors(scenes, constraint))
+    theta = along[:, None] + hand * angle_draws(first, (scenes.count, tries), rng)
+    near, far = way(scenes, constraint, table, theta)
+    agreed = rng.random(theta.shape) < _agreement(others, theta)
+    return theta, near, far, agreed & (far > near)
+
+
 def _agreement(factors, theta):
-    """The product of factors, each as a share of its greatest value."""
+    """The product of factors at theta (P, N), each as a share of its greatest value."""
     product = np.ones_like(theta)
     for density, hand, along in factors:
         middle, _ = angle_middle_and_half(density)
-        product = product * angle_density(density, hand * (theta - along))
+        product = product * angle_density(density, hand * (theta - along[:, None]))
         product = product / angle_density(density, np.array(middle))
     return product
 
