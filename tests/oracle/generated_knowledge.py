@@ -251,6 +251,39 @@ def _fused(rng):
     return _made(rng, text, _pick(rng, "A", "B"), "M", "N")
 
 
+def _seen_fits(rng):
+    """B is seen, and is told from A, which is told from M: Gaussians, so exact."""
+    place = rng.uniform(-0.5, 0.5, 2)
+    step = rng.uniform(-0.3, 0.3, 2)
+    x, y = place + step + 0.1 * rng.standard_normal(2)
+    text = _text(
+        _classes(rng, "A", "B", "C"),
+        _static(rng, "M"),
+        _landmark(rng, "m", "M", 0.03, at=(0.0, 0.0)),
+        _landmark(rng, "b", "B", 0.02, at=(x, y)),
+        *(_fit(rng, "A", "M", (v, -u)) for u, v in (place, place + 0.1 * rng.standard_normal(2))),
+        _fit(rng, "B", "A", (step[1], -step[0])),
+        _fit(rng, "C", "A"),
+    )
+    return _made(rng, text, _pick(rng, "A", "C"), "M")
+
+
+def _seen(rng):
+    """B is seen on one side, which tells on which side A is, and where."""
+    side = _pick(rng, -1.0, 1.0)
+    shares = rng.dirichlet([3.0, 3.0])
+    text = _text(
+        _classes(rng, "A", "B", "C", sized=False),
+        _static(rng, "M"),
+        _landmark(rng, "m", "M", at=(0.0, 0.0)),
+        _landmark(rng, "b", "B", 0.01, at=(side * rng.uniform(0.25, 0.5), rng.uniform(0.2, 0.4))),
+        f"believe {shares[0]:.3f} :: left-of(A, M) wrt absolute | {shares[1]:.3f} :: right-of(A, M) wrt absolute.",
+        "observe behind-of(B, A) wrt absolute.",
+        _link(rng, "C", "A", frames=("absolute",), distances=()),
+    )
+    return _made(rng, text, _pick(rng, "A", "C"), "M")
+
+
 _OFFSETS = ((0.0, 1.0), (-1.0, 0.0), (0.0, -1.0), (1.0, 0.0))
 
 
@@ -328,6 +361,7 @@ MAKERS = {
     "between": _between,
     "fits": _fits,
     "fused fits": _fused_fits,
+    "seen fits": _seen_fits,
     "on a desk": _on_a_desk,
     "wide": _wide,
     "distant pair": _distant_pair,
@@ -335,6 +369,7 @@ MAKERS = {
     "seen by a viewer": _seen_by_a_viewer,
     "chain on a desk": _chain_on_a_desk,
     "fused": _fused,
+    "seen": _seen,
     "given": _given,
     "required": _required,
 }

@@ -1,4 +1,7 @@
-"""Every combination of alternatives and of landmarks, by itertools.product; nothing is cut and nothing is clever."""
+"""Every combination of alternatives and of landmarks, by itertools.product; nothing is cut and nothing is clever.
+
+All that is known takes part, whatever is asked: what does not matter must cancel out by itself.
+"""
 
 from dataclasses import dataclass
 from itertools import product
@@ -22,30 +25,15 @@ class NaiveWorld:
 
 
 def naive_worlds(graph, names):
-    """Every world of what names depend on; those that differ in nothing the names depend on are added up."""
-    choices = _choices(graph, names)
+    """Every world of all that is known, with a landmark for each of the names asked about that landmarks stand for."""
+    for choice in graph.choices:
+        assert choice.authority is not Authority.SCENE or len(choice.alternatives) == 1, "several scenes"
     found = {}
-    for picks in product(*(_options(choice) for choice in choices)):
+    for picks in product(*(_options(choice) for choice in graph.choices)):
         share = float(np.prod([one for one, _, _ in picks]))
         for more, world in _bound(graph, names, picks):
             found[world] = found.get(world, 0.0) + share * more
     return [NaiveWorld(share, *world) for world, share in found.items() if share > 0.0]
-
-
-def _choices(graph, names):
-    """The choices that say where names are, where what they are placed by is, and so on up to landmarks."""
-    waiting, seen, found = list(names), set(), []
-    while waiting:
-        name = waiting.pop()
-        if name in seen or graph.instances_of(name):
-            continue
-        seen.add(name)
-        for choice in graph.choices_for(name):
-            assert choice.authority is not Authority.SCENE or len(choice.alternatives) == 1, "several scenes"
-            found += [choice] if all(choice is not one for one in found) else []
-            constraints = [one for alternative in choice.alternatives for one in alternative.constraints]
-            waiting += [relatum for one in constraints for relatum in one.relata]
-    return found
 
 
 def _options(choice):
@@ -57,28 +45,15 @@ def _options(choice):
 
 
 def _bound(graph, names, picks):
-    """Each way in which landmarks may stand for the names that are needed, with its share."""
-    absent = {name for _, _, gone in picks for name in gone}
+    """Each way in which landmarks may stand for the names that are spoken of, with its share; what is seen is there."""
+    absent = {name for _, _, gone in picks for name in gone if not graph.instances_of(name)}
     said = {c: None for _, constraints, _ in picks for c in constraints if c.referent not in absent}
-    needed = _needed(graph, names, said)
-    constraints = tuple(sorted((c for c in said if c.referent in needed), key=_order))
-    constraints = tuple(c for c in constraints if not graph.instances_of(c.referent))
-    seen = sorted(name for name in needed if graph.instances_of(name))
-    for landmarks in product(*(graph.instances_of(name) for name in seen)):
-        share = float(np.prod([1.0 / len(graph.instances_of(name)) for name in seen]))
-        yield share, (constraints, tuple(zip(seen, landmarks, strict=True)))
-
-
-def _needed(graph, names, constraints):
-    needed, waiting = set(), list(names)
-    while waiting:
-        name = waiting.pop()
-        if name in needed:
-            continue
-        needed.add(name)
-        if not graph.instances_of(name):
-            waiting += [relatum for c in constraints if c.referent == name for relatum in c.relata]
-    return needed
+    constraints = tuple(sorted(said, key=_order))
+    spoken = {*names, *(name for c in constraints for name in (c.referent, *c.relata))}
+    known = sorted(name for name in spoken if graph.instances_of(name))
+    for landmarks in product(*(graph.instances_of(name) for name in known)):
+        share = float(np.prod([1.0 / len(graph.instances_of(name)) for name in known]))
+        yield share, (constraints, tuple(zip(known, landmarks, strict=True)))
 
 
 def _order(constraint):
@@ -107,10 +82,7 @@ def order_of_placing(graph, world):
     """The constraints in an order in which their relata are placed before them, and the root landmark of each name."""
     roots = dict(world.landmarks)
     waiting, placings = list(world.constraints), []
-    while True:
-        ready = [one for one in waiting if all(name in roots for name in one.relata)]
-        if not ready:
-            return placings, roots
+    while ready := [one for one in waiting if all(name in roots for name in one.relata)]:
         constraint = min(ready, key=lambda one: (_late(one, waiting), _order(one)))
         waiting.remove(constraint)
         if _says_nothing_more(constraint, placings, roots):
@@ -118,6 +90,7 @@ def order_of_placing(graph, world):
         carrier = carrier_of(graph, constraint, world.constraints, roots)
         placings.append(Placing(constraint, constraint.referent not in roots, carrier))
         roots.setdefault(constraint.referent, roots[constraint.relatum])
+    return placings, roots
 
 
 def _late(constraint, waiting):

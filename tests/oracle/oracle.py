@@ -54,7 +54,7 @@ class _World:
 def consult(graph, target, events=(), given=None, viewer=None, count=4000, rng=None, points=1000):
     """Ask the oracle for a target, for events, or both; all that the graph requires is required.
 
-    Draws are of all that target, events and conditions speak of: what an event speaks of may tell of the target too.
+    Draws are of all that is known; worlds that place the same of what is asked about are weighed against each other.
     """
     conditions = [(given, 1.0)] if given is not None else []
     conditions += [(one.formula, 1.0 if one.share is None else one.share) for one in graph.requirements]
@@ -80,18 +80,17 @@ def _drawn(graph, world, target, names, events, conditions, viewer, count, rng):
     columns = np.array([np.ones(count), evidence, *moments, *held])
     placed = frozenset(name for name in names if name in scenes.points)
     batches = columns.reshape(len(columns), BATCHES, -1).sum(axis=2)
-    key = _cited(graph, world, target) if has_target else frozenset()
+    key = _cited(world, target) if has_target else frozenset()
     return _World(world.share, key, placed, has_target, batches, np.stack([x, y], axis=1), weights)
 
 
-def _cited(graph, world, target):
+def _cited(world, target):
     """The statements that place the target: those of its constraints, of what these place it by, and so on."""
-    waiting, cited = [target], set()
-    while waiting:
-        name = waiting.pop()
-        mine = [one for one in world.constraints if one.referent == name]
-        cited |= {str(one.statement) for one in mine}
-        waiting += [relatum for one in mine for relatum in one.relata]
+    landmarks, names, cited = dict(world.landmarks), [target], []
+    for name in names:
+        mine = [one for one in world.constraints if one.referent == name and name not in landmarks]
+        names += [relatum for one in mine for relatum in one.relata if relatum not in names]
+        cited += [str(one.statement) for one in mine]
     return frozenset(cited)
 
 
