@@ -13,13 +13,16 @@ import qsrlang as qsr
 
 LEAST_WEIGHT = 0.01
 NEIGHBOURS = 3
+LEAST_ERROR = 5e-4
 
 
 @dataclass
 class Gap:
-    """One comparison. `z` are weights, means and covariances off the oracle's, in its standard errors, and `events` so
-    are probabilities; the errors as such are those of means in deviations, of deviations as a ratio, of weights and of
-    probabilities; `energy` is the energy distance of the mixture from the oracle's draws, from 0 (equal) to 1; `kl` is
+    """One comparison: how far the engine is from the oracle.
+
+    `z` are weights, means and covariances in standard errors of the oracle, and so are `events`, probabilities by the
+    method that found them. The errors as such: of means in deviations, of deviations as a ratio, of weights, of
+    probabilities. `energy` is the energy distance of the mixture from the oracle's draws, from 0 (equal) to 1; `kl`
     the Kullback-Leibler divergence of the mixture from the truth [nat].
     """
 
@@ -28,7 +31,7 @@ class Gap:
     ratio: float
     weight: float
     prob: np.ndarray
-    events: np.ndarray
+    events: dict
     energy: float
     kl: float
     draws: float
@@ -126,12 +129,14 @@ def _score(value, measured, i, floor):
 
 
 def _events(judged, known):
-    errors, scores = [], []
+    """How far probabilities are off, and in standard errors of both engines, by the engine's method."""
+    errors, scores = [], {"exact": [], "draws": [], "Gaussian": []}
     for event, (value, error) in zip(judged.base.events, judged.events, strict=True):
         answer = known.prob(event, judged.base.given, viewer=judged.viewer)
         errors.append(abs(answer.value - value))
-        scores.append((answer.value - value) / np.hypot(error, answer.standard_error + 1e-4))
-    return np.array(errors), np.array(scores)
+        doubt = np.hypot(error, answer.standard_error) + LEAST_ERROR
+        scores[answer.method].append((answer.value - value) / doubt)
+    return np.array(errors), scores
 
 
 def energy_distance(points, others):
