@@ -14,6 +14,7 @@ import qsrlang as qsr
 LEAST_WEIGHT = 0.01
 NEIGHBOURS = 3
 LEAST_ERROR = 5e-4
+MOST_COMPONENTS = 10_000
 
 
 @dataclass
@@ -72,7 +73,7 @@ def judge(base, count, draws):
 def gap(judged, prepare=lambda known: known):
     """Return how far the engine is from the oracle."""
     base, verdict, known = judged.base, judged.verdict, prepare(judged.known)
-    answer = known.where(base.target, viewer=judged.viewer, given=base.given)
+    answer = known.where(base.target, viewer=judged.viewer, given=base.given, max_components=MOST_COMPONENTS)
     z, mean, ratio, weight = _moments(_grouped(answer, verdict), verdict)
     prob, events = _events(judged, known)
     drawn = answer.mixture.sample(len(verdict.points), np.random.default_rng(base.seed))
