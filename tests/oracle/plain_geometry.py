@@ -82,3 +82,23 @@ def angle_middle_and_half(density):
         middle = 0.5 * (density.low.value + density.high.value)
         return middle, 0.5 * min(density.high.value - density.low.value, CIRCLE)
     return 0.0, math.pi
+
+
+def overlapping(offsets, yaw, other_yaw, half, other_half):
+    """Whether boxes overlap: no side of either has the whole of the other beyond it."""
+    corners = np.array([[1, 1], [1, -1], [-1, 1], [-1, -1]])
+    return ~(
+        _apart(-offsets, yaw, other_yaw, half, other_half * corners)
+        | _apart(offsets, other_yaw, yaw, other_half, half * corners)
+    )
+
+
+def _apart(offsets, yaw, other_yaw, half, other_corners):
+    """Whether all corners of another box, at minus the offsets, are beyond one side of a box turned by yaw."""
+    x, y = along_axes(-offsets, yaw)
+    turn = other_yaw - yaw
+    c, s = np.cos(turn)[:, None], np.sin(turn)[:, None]
+    xs = x[:, None] + c * other_corners[:, 0] - s * other_corners[:, 1]
+    ys = y[:, None] + s * other_corners[:, 0] + c * other_corners[:, 1]
+    beyond = [xs >= half[0], xs <= -half[0], ys >= half[1], ys <= -half[1]]
+    return np.any([side.all(axis=1) for side in beyond], axis=0)
