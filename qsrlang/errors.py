@@ -128,7 +128,8 @@ class ImpossibleConditionError(QSRError):
     def __init__(self, conditions: Sequence[str], draws: int) -> None:
         self.conditions, self.draws = tuple(conditions), draws
         what = " and ".join(self.conditions) or "what is known"
-        super().__init__(f"{what}: this held in none of {draws} draws; assume less, or draw more")
+        found = f"this held in none of {draws} draws; assume less, or draw more"
+        super().__init__(f"{what}: {found if draws else 'this cannot hold; assume less'}")
 
 
 class UnansweredQueryError(QSRError):

@@ -59,11 +59,18 @@ class PolarConditional:
 
     def turning(self, heading: float, is_certain: bool) -> Turning | None:
         """Return the moments in the relatum's frame, unless they depend on a place: of a support, viewer or relatum."""
+        axes = self._turning_axes(heading, is_certain)
+        return None if axes is None else _turning(self.density, axes, self.part)
+
+    def turns(self, heading: float, is_certain: bool) -> bool:
+        """Return whether it is the same in the relatum's frame, wherever that is."""
+        return self._turning_axes(heading, is_certain) is not None
+
+    def _turning_axes(self, heading: float, is_certain: bool) -> tuple[float, ...] | None:
         if self.standpoint.second or self.density.support:
             return None
         stand = self.standpoint
-        axes = stand.relatum.turning_axes(self.frames, stand.viewer, heading, is_certain)
-        return None if axes is None else _turning(self.density, axes, self.part)
+        return stand.relatum.turning_axes(self.frames, stand.viewer, heading, is_certain)
 
     def moments(self, states: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return mean (P, 2) and covariance (P, 2, 2) of x."""

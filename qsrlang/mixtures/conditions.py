@@ -21,10 +21,15 @@ class Condition:
     share: float | None
     text: str
 
+    @property
+    def factors(self) -> tuple[float, float]:
+        """The weights of what it holds in, and of what it does not hold in."""
+        share = 1.0 if self.share is None else self.share
+        return share, 1.0 - share
+
     def factor(self, held: BoolArray) -> FloatArray:
         """Return the weight (P,) that draws get by whether the formula holds in them."""
-        share = 1.0 if self.share is None else self.share
-        return np.where(held, share, 1.0 - share)
+        return np.where(held, *self.factors)
 
 
 def objects_of(*formulas: Formula) -> tuple[str, ...]:

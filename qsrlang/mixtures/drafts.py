@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
 from qsrlang.mixtures.chains import needed_for
+from qsrlang.mixtures.evidence import constraints_on
 from qsrlang.mixtures.roles import instances_in_roles, is_unplaced_role, landmarks_of_role
 from qsrlang.relations.graph import Alternative, Authority, Choice, Constraint, Landmark, Pair, RelationGraph
 
@@ -26,6 +27,7 @@ class Draft:
     """
 
     pending: deque[str]
+    telling: tuple[str, ...] = ()
     weight: float = 1.0
     likeness: float = 1.0
     depth: int = 0
@@ -33,19 +35,18 @@ class Draft:
     covered: set[Pair] = field(default_factory=set)
     closed: set[int] = field(default_factory=set)
     decided: list[tuple[float, Outcome]] = field(default_factory=list)
-    told: set[int] = field(default_factory=set)
+    heard: set[int] = field(default_factory=set)
     constraints: list[Constraint] = field(default_factory=list)
     relata: dict[str, tuple[str, ...]] = field(default_factory=dict)
     whole: list[int] = field(default_factory=list)
     bindings: dict[str, Landmark] = field(default_factory=dict)
     aliases: dict[str, str] = field(default_factory=dict)
     absent: list[str] = field(default_factory=list)
-    seen: set[str] = field(default_factory=set)
 
     @classmethod
-    def start(cls, targets: Iterable[str]) -> Draft:
-        """Return the draft in which nothing is decided."""
-        return cls(deque(targets))
+    def start(cls, targets: Iterable[str], telling: tuple[str, ...]) -> Draft:
+        """Return the draft in which nothing is decided; `telling` things are visited after the targets."""
+        return cls(deque(targets), telling)
 
     def branches(self, graph: RelationGraph, in_parts: bool) -> list[Draft] | None:
         """Return the drafts that the next open decision leads to, or None where all is decided."""
@@ -71,7 +72,7 @@ class Draft:
             self.pending.popleft()
             self.visited.add(name)
             self.pending += dict.fromkeys(self.relata.get(name, ()))
-        return self._evidence(graph)
+        return self._told(graph)
 
     def _decisions_on(self, graph: RelationGraph, name: str) -> Sequence[Decision] | None:
         instances = graph.instances_of(name)
@@ -85,28 +86,19 @@ class Draft:
         choice = self._open_choice(graph, name)
         return None if choice is None else self._alternatives(graph, choice)
 
-    def _evidence(self, graph: RelationGraph) -> Sequence[Decision] | None:
-        """Return what is to be decided about an object that is seen and tells of what is visited, or None."""
-        for name, choice in graph.evidence:
-            if id(choice) in self.told or not self._tells(graph, name, choice):
-                continue
+    def _told(self, graph: RelationGraph) -> Sequence[Decision] | None:
+        """Return what is to be decided about the next thing that tells of the targets, or None."""
+        for name in self.telling:
             if name not in self.visited:
                 return [(1.0, _visit((name,)), None)]
-            self.told.add(id(choice))
-            self.seen.add(name)
-            if any(pair[0] == name and pair not in self.covered for pair in choice.governs):
-                return self._alternatives(graph, choice)
-            return [(1.0, _visit(self.relata.get(name, ())), None)]
+            for choice in graph.choices_for(graph.node_of(name)) if name in self.bindings else ():
+                if id(choice) in self.heard or not any(constraints_on(graph, choice, name)):
+                    continue
+                self.heard.add(id(choice))
+                if any(graph.pair_of(one) not in self.covered for one in constraints_on(graph, choice, name)):
+                    return self._alternatives(graph, choice)
+                return [(1.0, _visit(self.relata.get(name, ())), None)]
         return None
-
-    def _tells(self, graph: RelationGraph, name: str, choice: Choice) -> bool:
-        relata = {one for pair in choice.governs if pair[0] == name for one in pair[1].split(" and ")}
-        return any(self._is_open(graph, one) for one in self.visited & {name, *relata})
-
-    def _is_open(self, graph: RelationGraph, name: str) -> bool:
-        """Return whether it is not certain where something is: it is no landmark, or one of several, or not exact."""
-        landmark = self.bindings.get(name)
-        return landmark is None or any(landmark.deviation) or len(graph.instances_of(name)) > 1
 
     def _landmarks_of_role(
         self, graph: RelationGraph, role: str
@@ -184,14 +176,13 @@ class Draft:
             covered=self.covered.copy(),
             closed=self.closed.copy(),
             decided=self.decided.copy(),
-            told=self.told.copy(),
+            heard=self.heard.copy(),
             constraints=self.constraints.copy(),
             relata=self.relata.copy(),
             whole=self.whole.copy(),
             bindings=self.bindings.copy(),
             aliases=self.aliases.copy(),
             absent=self.absent.copy(),
-            seen=self.seen.copy(),
         )
         draft._decide(decision)
         return draft

@@ -7,7 +7,7 @@ from either end. What is not placed holds in no relation.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -60,20 +60,32 @@ class Outlook:
         return _inside(conditional, relation, self.graph.relations, points, self.drawn.states)
 
 
-def share_inside(
-    polar: PolarConditional, relation: Relation, arcs: Arcs, rays: Rays, states: FloatArray
-) -> FloatArray:
-    """Return in which share (P,) of the mass along rays (P, N), from the same states (P, n), a relation holds."""
-    stance = polar.stance(states)
-    angles = polar.density.hands[0] * (rays.directions - stance.axes[:, [0]])
-    inside = rays.weights * arcs.cover(angles, rays.cell)
-    if relation.distance is not None:
-        low, high = _bounds(polar, relation, stance, rays.directions)
-        overlap = np.minimum(high, rays.high) - np.maximum(low, rays.low)
-        length = rays.high - rays.low
-        with np.errstate(invalid="ignore", divide="ignore"):
-            inside = inside * np.where(length > 0.0, np.clip(overlap / length, 0.0, 1.0), overlap >= 0.0)
-    return np.asarray(inside.sum(axis=1))
+@dataclass(frozen=True, slots=True)
+class Window:
+    """The part of the plane that a relation holds in, seen from where a polar density would be."""
+
+    polar: PolarConditional
+    relation: Relation
+    arcs: Arcs
+
+    def cover(self, rays: Rays, states: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return, along rays (P, N) from states (P, n), the share of each cell inside, and from where to where."""
+        stance = self.polar.stance(states)
+        angles = self.polar.density.hands[0] * (rays.directions - stance.axes[:, [0]])
+        low, high = _bounds(self.polar, self.relation, stance, rays.directions)
+        return self.arcs.cover(angles, rays.cell), low, high
+
+
+def share_inside(windows: Sequence[Window], rays: Rays, states: FloatArray) -> FloatArray:
+    """Return which share (P,) of the mass along rays (P, N), from states (P, n), lies inside of all windows."""
+    share, low, high = np.ones_like(rays.weights), rays.low, rays.high
+    for window in windows:
+        cover, least, greatest = window.cover(rays, states)
+        share, low, high = np.minimum(share, cover), np.maximum(low, least), np.minimum(high, greatest)
+    length = rays.high - rays.low
+    with np.errstate(invalid="ignore", divide="ignore"):
+        along = np.where(length > 0.0, np.clip((high - low) / length, 0.0, 1.0), high >= low)
+    return np.asarray((rays.weights * share * along).sum(axis=1))
 
 
 def _inside(

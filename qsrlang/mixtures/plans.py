@@ -88,7 +88,7 @@ def plan_worlds(
     plans = []
     for world in worlds:
         pairs = tuple((one.referent, one.relatum, one.towards, in_region(one)) for one in world.constraints)
-        key = (pairs, world.bindings, world.aliases, world.absent, world.seen)
+        key = (pairs, world.bindings, world.aliases, world.absent, world.telling)
         if key not in patterns:
             patterns[key] = _pattern(graph, world, targets, asked)
         plans.append(patterns[key].filled(world.constraints))
@@ -215,9 +215,9 @@ def _step(
 
 def _helpful(world: World, targets: tuple[str, ...]) -> tuple[Constraint, ...]:
     """Return the constraints that help to place targets, or tell of them, in an order that is always the same."""
-    needed = needed_for([*(world.named(target) for target in targets), *world.seen], world.constraints)
+    needed = needed_for([*(world.named(target) for target in targets), *world.telling], world.constraints)
     absent = {world.named(name) for name in world.absent}
-    known = {name for name, _ in world.bindings} - set(world.seen)
+    known = {name for name, _ in world.bindings} - set(world.telling)
     useful = needed - absent - known
     return tuple(sorted((one for one in world.constraints if one.referent in useful), key=_rank))
 

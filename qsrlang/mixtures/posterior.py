@@ -129,10 +129,12 @@ def _forward(
 ) -> _Forward:
     """Place what the steps place, one after the other; what only adds to that is passed over.
 
-    There are no covariances beyond DENSE columns where no step needs them.
+    There are no covariances where no step needs them and they will be found otherwise.
     """
     means = np.tile(layout.mean, (count, 1))
-    joints = np.tile(np.diag(layout.variance), (count, 1, 1)) if _is_dense(factors, layout) else None
+    is_needed = layout.size <= DENSE and all(step.places for step in steps)
+    is_needed = is_needed or any(one.bends for said in factors for one in said)
+    joints = np.tile(np.diag(layout.variance), (count, 1, 1)) if is_needed else None
     equations = []
     for step, said in zip(steps, factors, strict=True):
         read, placed = said[0].columns, said[0].referent
@@ -150,10 +152,6 @@ def _forward(
     return _Forward(means, joints, tuple(equations))
 
 
-def _is_dense(factors: Sequence[Sequence[Factor]], layout: Layout) -> bool:
-    return layout.size <= DENSE or any(one.bends for said in factors for one in said)
-
-
 def _equations(said: Sequence[Factor], means: FloatArray, covariances: FloatArray) -> Linear:
     """Return the equations of a step in W plans, linearised about their columns: (W, 2, K), (W, 2), (W, 2, 2)."""
     if len(said) == 1:
@@ -162,6 +160,7 @@ def _equations(said: Sequence[Factor], means: FloatArray, covariances: FloatArra
     for row, factor in enumerate(said):
         rows[id(factor)].append(row)
     count, width = means.shape
+    covariances = np.broadcast_to(covariances, (count, width, width))
     slopes, offsets, noises = np.empty((count, 2, width)), np.empty((count, 2)), np.empty((count, 2, 2))
     for chosen in rows.values():
         one = said[chosen[0]].linearised_each(means[chosen], covariances[chosen])

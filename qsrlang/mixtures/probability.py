@@ -5,15 +5,21 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
+from qsrlang.errors import ImpossibleConditionError
 from qsrlang.geometry.pose import Pose2
-from qsrlang.language.syntax import Atom, Formula, Not, atoms_of
-from qsrlang.mixtures.atoms import DRAWS, EXACT, GAUSSIAN, atom_probability
+from qsrlang.language.syntax import Atom, Formula, atoms_of
 from qsrlang.mixtures.conditioning import Drawing, draw_scenes, effective_draws, ratio_error
-from qsrlang.mixtures.conditions import Condition, conditions_on, objects_of
-from qsrlang.mixtures.solving import solve_worlds
+from qsrlang.mixtures.conditions import Condition, assumed_atoms, conditions_on, objects_of
+from qsrlang.mixtures.pairs import direction_probability
+from qsrlang.mixtures.solving import Assumed, Solved, solve_worlds
+from qsrlang.mixtures.tables import expectation, truth_table
 from qsrlang.mixtures.weighed import Weighed
 from qsrlang.mixtures.worlds import MAX_WORLDS
 from qsrlang.relations.graph import RelationGraph
+
+EXACT, GAUSSIAN, DRAWS = "exact", "Gaussian", "draws"
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,31 +71,64 @@ def prove(
 ) -> Proved:
     """Return P(formula | given, requirements) over worlds and places, with its proof.
 
-    Of one atom, negated or not, with nothing assumed, analytically where that can be; else by weighted draws of the
-    true densities. What no world places holds in no relation. Raises ImpossibleConditionError, NoRoomError,
-    MissingFacingError.
+    By truth tables of the stated densities where those tell; of one direction, with nothing assumed, by the Gaussian
+    of each world; else by weighted draws of the true densities. What no world places holds in no relation. Raises
+    ImpossibleConditionError, NoRoomError, MissingFacingError.
     """
     conditions = conditions_on(graph, objects_of(formula), given)
-    found = None if conditions else _without_draws(graph, formula, drawing.viewer, limit)
-    return found or _by_draws(graph, formula, conditions, drawing)
+    return _without_draws(graph, formula, conditions, drawing.viewer, limit) or _by_draws(
+        graph, formula, conditions, drawing
+    )
 
 
-def _without_draws(graph: RelationGraph, formula: Formula, viewer: Pose2 | None, limit: int) -> Proved | None:
-    atom = formula.part if isinstance(formula, Not) else formula
-    if not isinstance(atom, Atom):
+def _without_draws(
+    graph: RelationGraph,
+    formula: Formula,
+    conditions: tuple[Condition, ...],
+    viewer: Pose2 | None,
+    limit: int,
+) -> Proved | None:
+    atoms = (*atoms_of(formula), *assumed_atoms(conditions))
+    names = objects_of(formula, *(one.formula for one in conditions))
+    solution = solve_worlds(graph, names, viewer, limit, atoms, is_needed=False)
+    found = [_masses(graph, one, formula, conditions, atoms, viewer) for one in solution.worlds]
+    told = [one for one in found if one is not None]
+    if len(told) < len(found):
         return None
-    solution = solve_worlds(graph, objects_of(atom), viewer, limit, (atom,))
-    found = []
-    for one in solution.worlds:
-        share = atom_probability(graph, one, atom, viewer)
-        if share is None:
-            return None
-        found.append(share)
-    method = GAUSSIAN if any(how == GAUSSIAN for _, how in found) else EXACT
-    shares = [1.0 - share if isinstance(formula, Not) else share for share, _ in found]
-    value = sum(one.weight * share for one, share in zip(solution.worlds, shares, strict=True))
-    answer = Probability(text_of(formula), min(value, 1.0), method, dropped=solution.dropped)
-    return Proved(answer, solution.worlds, shares)
+    masses = [one.weight * whole for one, (_, whole, _) in zip(solution.worlds, told, strict=True)]
+    total = sum(masses)
+    if not total > 0.0:
+        raise ImpossibleConditionError([one.text for one in conditions], 0)
+    worlds = [Assumed(one, mass / total) for one, mass in zip(solution.worlds, masses, strict=True)]
+    shares = [true / whole if whole > 0.0 else 0.0 for true, whole, _ in told]
+    value = sum(one.weight * share for one, share in zip(worlds, shares, strict=True))
+    method = EXACT if all(exact for *_, exact in told) else GAUSSIAN
+    texts = tuple(one.text for one in conditions)
+    answer = Probability(text_of(formula), min(value, 1.0), method, assumed=texts, dropped=solution.dropped)
+    return Proved(answer, worlds, shares)
+
+
+def _masses(
+    graph: RelationGraph,
+    solved: Solved,
+    formula: Formula,
+    conditions: tuple[Condition, ...],
+    atoms: Sequence[Atom],
+    viewer: Pose2 | None,
+) -> tuple[float, float, bool] | None:
+    """Return the mass of a world in which the formula and what is assumed hold, that of the latter, and if exact."""
+    found = truth_table(graph, solved, atoms, viewer)
+    if found is not None:
+        table, exact = found
+        assumed = [(one.formula, *one.factors) for one in conditions]
+        true = expectation(table, atoms, [(formula, 1.0, 0.0), *assumed])
+        return true, expectation(table, atoms, assumed), exact
+    if conditions or len(atoms) != 1:
+        return None
+    share = direction_probability(graph, solved, atoms[0], viewer)
+    if share is None:
+        return None
+    return expectation(np.array([1.0 - share, share]), atoms, [(formula, 1.0, 0.0)]), 1.0, False
 
 
 def _by_draws(

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import cache, partial
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from qsrlang.geometry.pose import Pose2
 from qsrlang.language.syntax import Atom
 from qsrlang.mixtures.gaussian import definite
 from qsrlang.mixtures.plans import Plan, plan_worlds
-from qsrlang.mixtures.posterior import Posterior, posteriors_of
+from qsrlang.mixtures.posterior import Posterior, posterior_of, posteriors_of
 from qsrlang.mixtures.supports import Seat
 from qsrlang.mixtures.worlds import MAX_WORLDS, World, enumerate_worlds
 from qsrlang.relations.graph import RelationGraph
@@ -22,17 +23,44 @@ from qsrlang.relations.graph import RelationGraph
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Solved:
-    """A world, how it places things, where they are together, and its posterior weight, of a total of 1."""
+    """A world, how it places things, its posterior weight, of a total of 1, and, once asked for, where they are."""
 
     world: World
     plan: Plan
-    posterior: Posterior
     weight: float
+    joint: Callable[[], Posterior]
+
+    @property
+    def posterior(self) -> Posterior:
+        """Where all things are together."""
+        return self.joint()
 
     def place(self, seat: Seat) -> tuple[FloatArray, FloatArray]:
         """Return mean (2,) and covariance (2, 2) of a thing that it places."""
         mean, covariance = self.posterior.marginal(seat)
         return mean, definite(covariance)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Assumed:
+    """A world under conditions: its posterior weight given those; things are placed as without them."""
+
+    solved: Solved
+    weight: float
+
+    @property
+    def world(self) -> World:
+        """The alternatives that hold in it."""
+        return self.solved.world
+
+    @property
+    def plan(self) -> Plan:
+        """How it places things."""
+        return self.solved.plan
+
+    def place(self, seat: Seat) -> tuple[FloatArray, FloatArray]:
+        """Return mean (2,) and covariance (2, 2) of a thing that it places."""
+        return self.solved.place(seat)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -49,20 +77,34 @@ def solve_worlds(
     viewer: Pose2 | None,
     limit: int = MAX_WORLDS,
     asked: Sequence[Atom] = (),
+    is_needed: bool = True,
 ) -> Solution:
     """Return the worlds of all objects named, solved; relations of several components split them further.
 
-    Their plans have the landmarks that bound the atoms `asked` about.
+    Their plans have the landmarks that bound the atoms `asked` about. Where all places are not needed, and no world is
+    to be weighed by them, they are found when they are asked for.
     """
     found = enumerate_worlds(graph, *names, limit=limit, in_parts=True)
     worlds = [world for world in found if world.weight > 0.0]
-    plans = list(zip(worlds, plan_worlds(graph, worlds, *names, asked=asked), strict=True))
-    posteriors = posteriors_of(graph, [plan for _, plan in plans], viewer)
-    placed = [frozenset(name for name in names if world.named(name) in plan.seats) for world, plan in plans]
-    logs = [one.log_evidence for one in posteriors]
-    weights = posterior_weights([world.weight for world, _ in plans], logs, placed)
-    solved = zip(plans, posteriors, weights.tolist(), strict=True)
-    return Solution(tuple(Solved(*plan, joint, weight) for plan, joint, weight in solved), found.dropped)
+    plans = plan_worlds(graph, worlds, *names, asked=asked)
+    if is_needed or any(plan.fused for plan in plans):
+        posteriors = posteriors_of(graph, plans, viewer)
+        joints: list[Callable[[], Posterior]] = [partial(_given, one) for one in posteriors]
+        logs = [one.log_evidence for one in posteriors]
+    else:
+        joints = [cache(partial(posterior_of, graph, plan, viewer)) for plan in plans]
+        logs = [0.0] * len(plans)
+    placed = [
+        frozenset(name for name in names if world.named(name) in plan.seats)
+        for world, plan in zip(worlds, plans, strict=True)
+    ]
+    weights = posterior_weights([world.weight for world in worlds], logs, placed).tolist()
+    solved = zip(worlds, plans, weights, joints, strict=True)
+    return Solution(tuple(Solved(*one) for one in solved), found.dropped)
+
+
+def _given(posterior: Posterior) -> Posterior:
+    return posterior
 
 
 def posterior_weights(

@@ -14,7 +14,7 @@ from qsrlang.arrays import FloatArray, IntArray
 from qsrlang.mixtures.layout import Layout
 from qsrlang.mixtures.linear import Factor, Linear
 
-DENSE = 600
+DENSE = 96
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -27,7 +27,9 @@ def lattices(count: int, width: int, rng: np.random.Generator) -> FloatArray:
     steps = np.sqrt(_primes(width)) % 1.0
     shifts = rng.random((REPLICATES, 1, width))
     points = np.arange(1, length + 1)[:, None] * steps
-    return np.asarray(((points + shifts) % 1.0).reshape(-1, width).clip(_MARGIN, 1.0 - _MARGIN))
+    return np.asarray(
+        ((points + shifts) % 1.0).reshape(REPLICATES * length, width).clip(_MARGIN, 1.0 - _MARGIN)
+    )
 
 
 def _primes(count: int) -> FloatArray:

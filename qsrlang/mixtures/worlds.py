@@ -11,6 +11,7 @@ from heapq import heappop, heappush
 from itertools import count
 
 from qsrlang.mixtures.drafts import Draft, Outcome
+from qsrlang.mixtures.evidence import telling
 from qsrlang.relations.graph import Constraint, Landmark, RelationGraph
 
 MAX_WORLDS = 10_000
@@ -22,8 +23,8 @@ class World:
     """Constraints that hold together, with the landmark that stands for each name, and their prior weight.
 
     `aliases` name, for a class whose any instance will do, the role it is here; constraints name the role already.
-    `absent` are the objects that are elsewhere: shares below 1 leave the rest to that. `seen` are the objects whose
-    places are known and tell of others. `decided` are the shares, whose product is the weight, and what was decided.
+    `absent` are the objects that are elsewhere: shares below 1 leave the rest to that. `telling` are the objects that
+    tell of others, seen or placed by several. `decided` are the shares, whose product is the weight, and of what.
     """
 
     weight: float
@@ -31,7 +32,7 @@ class World:
     bindings: tuple[tuple[str, Landmark], ...] = ()
     aliases: tuple[tuple[str, str], ...] = ()
     absent: tuple[str, ...] = ()
-    seen: tuple[str, ...] = ()
+    telling: tuple[str, ...] = ()
     decided: tuple[tuple[float, Outcome], ...] = ()
 
     def named(self, name: str) -> str:
@@ -63,7 +64,7 @@ def enumerate_worlds(
     """
     found: list[World] = []
     number = count()
-    waiting = [(-1.0, 0, next(number), Draft.start(targets))]
+    waiting = [(-1.0, 0, next(number), Draft.start(targets, telling(graph, targets)))]
     rest = 1.0
     while waiting and len(found) < limit and rest > MIN_REST:
         *_, draft = heappop(waiting)
@@ -88,7 +89,7 @@ def _world(draft: Draft) -> World:
         tuple(draft.bindings.items()),
         tuple(names.items()),
         tuple(draft.absent),
-        tuple(sorted(draft.seen)),
+        draft.telling,
         tuple(draft.decided),
     )
 

@@ -150,8 +150,8 @@ class RelationGraph:
     """All that is known: an edge (referent, relatum) for every pair that a choice speaks of.
 
     `roles` maps the objects that scenes tell apart by a role, such as `left: Cup`, to their classes; `scenes` maps the
-    names of those that have one to their members. `evidence` are the choices that speak of referents whose places
-    landmarks give.
+    names of those that have one to their members. `evidence` are the referents whose places landmarks
+    give.
     """
 
     classes: Mapping[str, ObjectClass]
@@ -165,7 +165,7 @@ class RelationGraph:
     _choices_of: Mapping[str, tuple[Choice, ...]] = field(init=False, repr=False, compare=False)
     _instances_of: Mapping[str, tuple[Landmark, ...]] = field(init=False, repr=False, compare=False)
     _kinds: Mapping[str, str] = field(init=False, repr=False, compare=False)
-    evidence: tuple[tuple[str, Choice], ...] = field(init=False, repr=False, compare=False)
+    evidence: tuple[str, ...] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         choices: dict[str, list[Choice]] = defaultdict(list)
@@ -178,10 +178,17 @@ class RelationGraph:
                 instances[name].append(landmark)
         kinds = {**self.roles, **{landmark.name: landmark.kind for landmark in reversed(self.landmarks)}}
         object.__setattr__(self, "_kinds", kinds)
-        seen = sorted(instances.keys() & choices.keys())
-        object.__setattr__(self, "evidence", tuple((name, one) for name in seen for one in choices[name]))
+        object.__setattr__(self, "evidence", tuple(sorted(self._referents() & instances.keys())))
         object.__setattr__(self, "_choices_of", {name: tuple(found) for name, found in choices.items()})
         object.__setattr__(self, "_instances_of", {name: tuple(found) for name, found in instances.items()})
+
+    def _referents(self) -> set[str]:
+        return {
+            one.referent
+            for choice in self.choices
+            for alternative in choice.alternatives
+            for one in alternative.constraints
+        }
 
     def node_of(self, name: str) -> str:
         """Return what statements about a name are about: a role is its own, a landmark counts as its class."""

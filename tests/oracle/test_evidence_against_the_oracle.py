@@ -47,18 +47,9 @@ CASES = {
         "P",
     ),
 }
-OPEN = {
-    "seen by its own name": "a landmark that a statement names as referent is not taken as evidence",
-    "two hops away": "evidence goes no further than to what a seen object is directly related to",
-    "of what matters in one world alone": "worlds that do not visit what evidence is about are not weighed by it",
-}
 
 
-def marked(name):
-    return pytest.param(name, marks=pytest.mark.xfail(reason=OPEN[name])) if name in OPEN else name
-
-
-@pytest.mark.parametrize("name", [marked(name) for name in CASES])
+@pytest.mark.parametrize("name", CASES)
 def test_what_is_seen_tells_of_what_it_was_placed_by(name):
     text, target = CASES[name]
     known = qsr.parse_knowledge(HEAD + text)
