@@ -11,6 +11,7 @@ from scipy.special import ndtri
 
 from qsrlang.arrays import FloatArray
 from qsrlang.geometry.angles import unit
+from qsrlang.geometry.polygon import ConvexPolygon
 from qsrlang.language.syntax import Fit, Frame
 from qsrlang.mixtures.angles import bump
 from qsrlang.mixtures.density import PolarDensity
@@ -213,14 +214,21 @@ def polar_density(
     graph: RelationGraph, constraint: Constraint, support: Support | None
 ) -> tuple[PolarDensity, tuple[Frame, ...]]:
     """Return the product of a constraint's atoms as one polar density, with the frame of each angle factor."""
+    outline = None if support is None else support.outline
+    return _product(constraint, _boxes(graph, constraint, support), outline, graph.reach)
+
+
+@lru_cache(maxsize=4096)
+def _product(
+    constraint: Constraint, boxes: Boxes, outline: ConvexPolygon | None, reach: float
+) -> tuple[PolarDensity, tuple[Frame, ...]]:
     turning = [atom for atom in constraint.atoms if atom.relation.angle is not None]
     frames = tuple(frame_of(constraint, atom) for atom in turning) or (Frame.RELATIVE,)
     angles = tuple(bump(atom.relation.angle) for atom in turning) or (bump(None),)
     distances = tuple(a.relation.distance for a in constraint.atoms if a.relation.distance is not None)
-    outline = None if support is None else support.outline
     hands = tuple(hand(frame) for frame in frames)
-    boxes, what = _boxes(graph, constraint, support), constraint.statement.text
-    return PolarDensity(angles, hands, distances, boxes, outline, graph.reach, what), frames
+    density = PolarDensity(angles, hands, distances, boxes, outline, reach, constraint.statement.text)
+    return density, frames
 
 
 def _boxes(graph: RelationGraph, constraint: Constraint, support: Support | None) -> Boxes:

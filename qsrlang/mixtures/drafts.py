@@ -217,10 +217,11 @@ def _stand_in(name: str, candidate: str) -> Callable[[Draft], None]:
 
 def _take(graph: RelationGraph, choice: Choice, alternative: Alternative) -> Callable[[Draft], None]:
     def act(draft: Draft) -> None:
-        for constraint in alternative.constraints:
-            if graph.pair_of(constraint) not in draft.covered:
+        pairs = [graph.pair_of(constraint) for constraint in alternative.constraints]
+        for constraint, pair in zip(alternative.constraints, pairs, strict=True):
+            if pair not in draft.covered:
                 draft.add(constraint)
-        draft.covered.update(graph.pair_of(constraint) for constraint in alternative.constraints)
+        draft.covered.update(pairs)
         draft.closed.add(id(choice))
 
     return act

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -67,7 +67,12 @@ class Proved:
 
 
 def prove(
-    graph: RelationGraph, formula: Formula, given: Formula | None, drawing: Drawing, limit: int = MAX_WORLDS
+    graph: RelationGraph,
+    formula: Formula,
+    given: Formula | None,
+    viewer: Pose2 | None,
+    drawing: Callable[[], Drawing],
+    limit: int = MAX_WORLDS,
 ) -> Proved:
     """Return P(formula | given, requirements) over worlds and places, with its proof.
 
@@ -76,9 +81,8 @@ def prove(
     ImpossibleConditionError, NoRoomError, MissingFacingError.
     """
     conditions = conditions_on(graph, objects_of(formula), given)
-    return _without_draws(graph, formula, conditions, drawing.viewer, limit) or _by_draws(
-        graph, formula, conditions, drawing
-    )
+    found = _without_draws(graph, formula, conditions, viewer, limit)
+    return found or _by_draws(graph, formula, conditions, drawing())
 
 
 def _without_draws(

@@ -113,8 +113,8 @@ class KnowledgeBase:
         MissingFacingError and ImpossibleConditionError.
         """
         how = Manner(engine, samples, rng, viewer, Bounds(max_worlds, max_components))
-        graph = self.with_landmarks(*landmarks_at(landmarks or {}, self.graph)).graph
-        return self._placed(graph, target, wrt, given, how).answer
+        known = self.with_landmarks(*landmarks_at(landmarks, self.graph)) if landmarks else self
+        return self._placed(known.graph, target, wrt, given, how).answer
 
     def prob(
         self,
@@ -253,7 +253,7 @@ class KnowledgeBase:
     def _proved(self, formula: Formula, given: str | Formula | None, how: Manner) -> Proved:
         assumed = self._formula(given)
         graph = rooted(self.graph, objects_of(formula, *([assumed] if assumed else [])))
-        return prove(graph, formula, assumed, how.drawing(), how.bounds.worlds)
+        return prove(graph, formula, assumed, how.viewer, how.drawing, how.bounds.worlds)
 
     @overload
     def _formula(self, formula: str | Formula) -> Formula: ...

@@ -31,6 +31,8 @@ class Relation:
     @property
     def terms(self) -> tuple[tuple[float, Relation], ...]:
         """The relation as exclusive alternatives with shares: one for each part of a `mix` of angles."""
+        if not isinstance(self.angle, Mix):
+            return ((1.0, self),)
         return tuple((share, replace(self, angle=angle)) for share, angle in _parts(self.angle))
 
 

@@ -94,6 +94,9 @@ class Constraint:
         others = [atom.relation.components for atom in self.atoms]
         return 1 if self.fit is not None else min(directed or others, default=1)
 
+    def __hash__(self) -> int:
+        return hash((self.referent, self.relatum, self.towards, self.statement.line, self.part))
+
     @property
     def relata(self) -> tuple[str, ...]:
         """The names it places its referent by."""
