@@ -12,7 +12,7 @@
   + MissingFacingError        a landmark without a heading where a frame of reference needs one
   + NoRoomError               relations that leave no room on their support
   + ImpossibleConditionError  an assumption or requirement that no possible scene meets
-  + UnansweredQueryError      a query that can be written but that this release does not answer
+  + UnansweredQueryError      a query about a map, which knowledge alone does not have
 """
 
 from __future__ import annotations
@@ -133,11 +133,11 @@ class ImpossibleConditionError(QSRError):
 
 
 class UnansweredQueryError(QSRError):
-    """A query that can be written but that this release does not answer, by its verb."""
+    """A query about what knowledge alone does not have, a map, by its verb."""
 
     def __init__(self, verb: str) -> None:
         self.verb = verb
         super().__init__(
-            f"'{verb}' is not answered by this release; ask 'where' or 'prob', "
-            "as in 'where Cup wrt Keyboard in room kitchen at 09:30?'"
+            f"'{verb}' is about views on a map, and knowledge alone has none; "
+            "name a place that has one, as in 'qsr ask kitchen/cups \"views Cup?\" --scenario kitchen'"
         )

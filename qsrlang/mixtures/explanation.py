@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 from qsrlang.arrays import FloatArray
 from qsrlang.mixtures.answers import Component, Where
-from qsrlang.mixtures.drafts import Outcome
 from qsrlang.mixtures.inference import Placed
 from qsrlang.mixtures.probability import Probability, Proved
 from qsrlang.mixtures.weighed import MIN_WEIGHT, Weighed, component_of
+from qsrlang.mixtures.worlds.drafts import Outcome
 from qsrlang.relations.graph import Alternative, Choice, Constraint, Landmark
 
 MAX_SHOWN = 12

@@ -11,14 +11,14 @@ import numpy as np
 from qsrlang.errors import UnreachedTargetError
 from qsrlang.geometry.pose import Pose2
 from qsrlang.mixtures.answers import Where
-from qsrlang.mixtures.chains import broken_chains, chain_starts
-from qsrlang.mixtures.conditioning import Drawing, draw_scenes, effective_draws
-from qsrlang.mixtures.conditions import Condition
+from qsrlang.mixtures.draws.conditioning import Drawing, draw_scenes, effective_draws
+from qsrlang.mixtures.draws.conditions import Condition
 from qsrlang.mixtures.reduction import MAX_COMPONENTS
 from qsrlang.mixtures.sampling import sampled_worlds
-from qsrlang.mixtures.solving import solve_worlds
+from qsrlang.mixtures.solving.weighing import solve_worlds
 from qsrlang.mixtures.weighed import Weighed, answer_of
-from qsrlang.mixtures.worlds import MAX_WORLDS
+from qsrlang.mixtures.worlds.chains import broken_chains, chain_starts
+from qsrlang.mixtures.worlds.enumeration import MAX_WORLDS
 from qsrlang.relations.graph import Landmark, RelationGraph
 
 

@@ -13,10 +13,10 @@ from qsrlang.arrays import BoolArray, FloatArray
 from qsrlang.errors import UnreachedTargetError
 from qsrlang.geometry.pose import Pose2
 from qsrlang.mixtures.answers import Where
-from qsrlang.mixtures.chains import broken_chains, depends_on, needed_for, placed_by
 from qsrlang.mixtures.gaussian import MIN_DEVIATION
 from qsrlang.mixtures.inference import Bounds, alone_with, place_exactly
-from qsrlang.mixtures.solving import Solved, solve_worlds
+from qsrlang.mixtures.solving.weighing import Solved, solve_worlds
+from qsrlang.mixtures.worlds.chains import broken_chains, depends_on, needed_for, placed_by
 from qsrlang.relations.graph import RelationGraph
 
 DRAWS = 8192

@@ -8,7 +8,7 @@ import numpy as np
 
 from qsrlang.errors import UnknownNameError, ValueRangeError
 from qsrlang.geometry.pose import Pose2
-from qsrlang.mixtures.conditioning import Drawing
+from qsrlang.mixtures.draws.conditioning import Drawing
 from qsrlang.mixtures.inference import Bounds, Placed, place_by_sampling, place_exactly
 from qsrlang.relations.graph import RelationGraph
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from qsrlang.errors import UnknownNameError, ValueRangeError
 from qsrlang.language.questions import Explain, Landmarks, Prob, Query, Sample, Views, Where
 from qsrlang.language.syntax import Argument, Atom, atoms_of
-from qsrlang.mixtures.chains import depends_on
+from qsrlang.mixtures.worlds.chains import depends_on
 from qsrlang.relations.graph import RelationGraph
 
 

@@ -10,13 +10,13 @@ import numpy as np
 from qsrlang.errors import ImpossibleConditionError
 from qsrlang.geometry.pose import Pose2
 from qsrlang.language.syntax import Atom, Formula, atoms_of
-from qsrlang.mixtures.conditioning import Drawing, draw_scenes, effective_draws, ratio_error
-from qsrlang.mixtures.conditions import Condition, assumed_atoms, conditions_on, objects_of
-from qsrlang.mixtures.pairs import direction_probability
-from qsrlang.mixtures.solving import Assumed, Solved, solve_worlds
-from qsrlang.mixtures.tables import expectation, truth_table
+from qsrlang.mixtures.draws.conditioning import Drawing, draw_scenes, effective_draws, ratio_error
+from qsrlang.mixtures.draws.conditions import Condition, assumed_atoms, conditions_on, objects_of
+from qsrlang.mixtures.solving.pairs import direction_probability
+from qsrlang.mixtures.solving.tables import expectation, truth_table
+from qsrlang.mixtures.solving.weighing import Assumed, Solved, solve_worlds
 from qsrlang.mixtures.weighed import Weighed
-from qsrlang.mixtures.worlds import MAX_WORLDS
+from qsrlang.mixtures.worlds.enumeration import MAX_WORLDS
 from qsrlang.relations.graph import RelationGraph
 
 EXACT, GAUSSIAN, DRAWS = "exact", "Gaussian", "draws"

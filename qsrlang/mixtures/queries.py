@@ -18,7 +18,7 @@ from qsrlang.language.parser import parse_formula, parse_landmark, parse_query
 from qsrlang.language.source import Source
 from qsrlang.language.syntax import Atom, Formula, atoms_of
 from qsrlang.mixtures.answers import Where
-from qsrlang.mixtures.conditions import conditions_on, objects_of
+from qsrlang.mixtures.draws.conditions import conditions_on, objects_of
 from qsrlang.mixtures.explanation import Explanation, explain_probability, explain_where
 from qsrlang.mixtures.inference import Bounds, Placed, in_frame, place_assuming, rooted
 from qsrlang.mixtures.information import LandmarkRanking, rank_landmarks
@@ -28,7 +28,7 @@ from qsrlang.mixtures.poses import Poses, landmarks_at
 from qsrlang.mixtures.probability import Probability, Proved, prove
 from qsrlang.mixtures.reduction import MAX_COMPONENTS
 from qsrlang.mixtures.scenes import SceneSamples, sample_scenes
-from qsrlang.mixtures.worlds import MAX_WORLDS
+from qsrlang.mixtures.worlds.enumeration import MAX_WORLDS
 from qsrlang.relations.build import ANYWHERE, Built, build_graph
 from qsrlang.relations.consistency.conflicts import Consistency
 from qsrlang.relations.consistency.deciding import find_conflicts

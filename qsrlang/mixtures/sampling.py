@@ -10,13 +10,13 @@ import numpy as np
 from qsrlang.arrays import FloatArray
 from qsrlang.errors import UnreachedTargetError
 from qsrlang.geometry.pose import Pose2
-from qsrlang.mixtures.draws import Drawn, draw, width_of
+from qsrlang.mixtures.draws.drawing import Drawn, draw, width_of
+from qsrlang.mixtures.draws.uniforms import independent
 from qsrlang.mixtures.gaussian import fitted
-from qsrlang.mixtures.plans import Plan, plan_worlds
-from qsrlang.mixtures.solving import log_mean_of, posterior_weights
-from qsrlang.mixtures.supports import Seat
-from qsrlang.mixtures.uniforms import independent
-from qsrlang.mixtures.worlds import World, enumerate_worlds
+from qsrlang.mixtures.solving.weighing import log_mean_of, posterior_weights
+from qsrlang.mixtures.worlds.enumeration import World, enumerate_worlds
+from qsrlang.mixtures.worlds.plans import Plan, plan_worlds
+from qsrlang.mixtures.worlds.supports import Seat
 from qsrlang.relations.graph import RelationGraph
 
 

@@ -11,17 +11,17 @@ import numpy as np
 from qsrlang.arrays import BoolArray, FloatArray
 from qsrlang.errors import ImpossibleConditionError
 from qsrlang.geometry.pose import Pose2
-from qsrlang.mixtures.collisions import Body, collide, pairs_apart
-from qsrlang.mixtures.conditioning import MAX_DRAWN, factors_of
-from qsrlang.mixtures.conditions import Condition, assumed_atoms, objects_of
-from qsrlang.mixtures.draws import Drawn, draw, width_of
-from qsrlang.mixtures.events import Outlook
-from qsrlang.mixtures.plans import Plan, plan_worlds
-from qsrlang.mixtures.solving import log_mean, log_mean_of
-from qsrlang.mixtures.uniforms import independent
-from qsrlang.mixtures.wedge import Wedge
-from qsrlang.mixtures.wedges import conjuncts, tightest_first, wedges_of
-from qsrlang.mixtures.worlds import World, enumerate_worlds
+from qsrlang.mixtures.draws.collisions import Body, collide, pairs_apart
+from qsrlang.mixtures.draws.conditioning import MAX_DRAWN, factors_of
+from qsrlang.mixtures.draws.conditions import Condition, assumed_atoms, objects_of
+from qsrlang.mixtures.draws.drawing import Drawn, draw, width_of
+from qsrlang.mixtures.draws.events import Outlook
+from qsrlang.mixtures.draws.uniforms import independent
+from qsrlang.mixtures.draws.wedge import Wedge
+from qsrlang.mixtures.draws.wedges import conjuncts, tightest_first, wedges_of
+from qsrlang.mixtures.solving.weighing import log_mean, log_mean_of
+from qsrlang.mixtures.worlds.enumeration import World, enumerate_worlds
+from qsrlang.mixtures.worlds.plans import Plan, plan_worlds
 from qsrlang.relations.graph import RelationGraph
 
 CHUNK = 8192

@@ -8,11 +8,11 @@ from typing import Protocol
 from qsrlang.arrays import FloatArray
 from qsrlang.errors import UnreachedTargetError
 from qsrlang.mixtures.answers import Component, Where, mixture_of
-from qsrlang.mixtures.chains import broken_chains
-from qsrlang.mixtures.plans import Plan
 from qsrlang.mixtures.reduction import MAX_COMPONENTS, reduced
-from qsrlang.mixtures.supports import Seat
-from qsrlang.mixtures.worlds import World
+from qsrlang.mixtures.worlds.chains import broken_chains
+from qsrlang.mixtures.worlds.enumeration import World
+from qsrlang.mixtures.worlds.plans import Plan
+from qsrlang.mixtures.worlds.supports import Seat
 from qsrlang.relations.graph import RelationGraph
 
 MIN_WEIGHT = 1e-12

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from qsrlang.arrays import FloatArray
-from qsrlang.mixtures.conditional import Conditional
+from qsrlang.mixtures.densities.conditional import Conditional
 
 DRAWS = 60_000
 

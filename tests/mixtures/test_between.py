@@ -11,9 +11,9 @@ from rigid_motions import assert_moves_with_its_landmarks
 from strategies import poses
 
 import qsrlang as qsr
-from qsrlang.mixtures.conditionals import make_conditional
-from qsrlang.mixtures.plans import plan_world
-from qsrlang.mixtures.worlds import enumerate_worlds
+from qsrlang.mixtures.densities.stated import make_conditional
+from qsrlang.mixtures.worlds.enumeration import enumerate_worlds
+from qsrlang.mixtures.worlds.plans import plan_world
 
 HEAD = """
 static A { size: 40 cm × 20 cm }, B { size: 20 cm × 60 cm }, P, Q. dynamic X { size: 8 cm × 8 cm }, Y, Z.

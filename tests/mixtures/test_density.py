@@ -8,9 +8,9 @@ import pytest
 import qsrlang as qsr
 from qsrlang.geometry.polygon import ConvexPolygon
 from qsrlang.geometry.pose import Pose2
-from qsrlang.mixtures.angles import bump
-from qsrlang.mixtures.density import PolarDensity
-from qsrlang.mixtures.stance import Boxes, Stance
+from qsrlang.mixtures.densities.angles import bump
+from qsrlang.mixtures.densities.density import PolarDensity
+from qsrlang.mixtures.densities.stance import Boxes, Stance
 
 RELATIONS = """
 relation diagonal(a, b) { angle: normal(45 deg, 20 deg) }.

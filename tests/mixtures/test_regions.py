@@ -12,10 +12,10 @@ from strategies import poses
 
 import qsrlang as qsr
 from qsrlang.geometry.angles import rotation
-from qsrlang.mixtures.plans import plan_world
-from qsrlang.mixtures.regions import BoxConditional, DiscConditional
-from qsrlang.mixtures.standpoint import Anchor, Standpoint
-from qsrlang.mixtures.worlds import enumerate_worlds
+from qsrlang.mixtures.densities.regions import BoxConditional, DiscConditional
+from qsrlang.mixtures.densities.standpoint import Anchor, Standpoint
+from qsrlang.mixtures.worlds.enumeration import enumerate_worlds
+from qsrlang.mixtures.worlds.plans import plan_world
 
 HEAD = """
 surface Desk { size: 150 cm × 80 cm }. surface Shelf. static Crate { size: 40 cm × 30 cm }.

@@ -8,7 +8,7 @@ from rigid_motions import assert_moves_with_its_landmarks
 from strategies import poses
 
 import qsrlang as qsr
-from qsrlang.mixtures.worlds import enumerate_worlds
+from qsrlang.mixtures.worlds.enumeration import enumerate_worlds
 
 HEAD = "surface Table { size: 2 m × 1 m }. static M, N. dynamic Cup, Plate, Spoon. "
 M = "m : M at (0 m, 0 m) facing -90 deg"

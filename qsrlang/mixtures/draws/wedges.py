@@ -10,13 +10,13 @@ import numpy as np
 
 from qsrlang.geometry.pose import Pose2
 from qsrlang.language.syntax import And, Atom
-from qsrlang.mixtures.conditional import frame_of, hand
-from qsrlang.mixtures.conditions import Condition
-from qsrlang.mixtures.plans import Plan, Step, asked_step, seats_read
-from qsrlang.mixtures.sectors import arcs_of
-from qsrlang.mixtures.supports import in_region
-from qsrlang.mixtures.wedge import Wedge
-from qsrlang.mixtures.worlds import World
+from qsrlang.mixtures.densities.conditional import frame_of, hand
+from qsrlang.mixtures.densities.sectors import arcs_of
+from qsrlang.mixtures.draws.conditions import Condition
+from qsrlang.mixtures.draws.wedge import Wedge
+from qsrlang.mixtures.worlds.enumeration import World
+from qsrlang.mixtures.worlds.plans import Plan, Step, asked_step, seats_read
+from qsrlang.mixtures.worlds.supports import in_region
 from qsrlang.relations.graph import RelationGraph
 
 

@@ -7,10 +7,10 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from qsrlang.language.syntax import Atom
-from qsrlang.mixtures.chains import needed_for
-from qsrlang.mixtures.layout import Layout
-from qsrlang.mixtures.supports import Seat, Support, in_region, stated_regions, support_of
-from qsrlang.mixtures.worlds import World
+from qsrlang.mixtures.worlds.chains import needed_for
+from qsrlang.mixtures.worlds.enumeration import World
+from qsrlang.mixtures.worlds.layout import Layout
+from qsrlang.mixtures.worlds.supports import Seat, Support, in_region, stated_regions, support_of
 from qsrlang.relations.graph import AtomicRelation, Constraint, Landmark, RelationGraph, Statement
 
 

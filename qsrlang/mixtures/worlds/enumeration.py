@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 from heapq import heappop, heappush
 from itertools import count
 
-from qsrlang.mixtures.drafts import Draft, Outcome
-from qsrlang.mixtures.evidence import telling
+from qsrlang.mixtures.worlds.drafts import Draft, Outcome
+from qsrlang.mixtures.worlds.evidence import telling
 from qsrlang.relations.graph import Constraint, Landmark, RelationGraph
 
 MAX_WORLDS = 10_000

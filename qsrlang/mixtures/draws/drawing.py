@@ -12,12 +12,12 @@ from scipy.special import ndtri
 
 from qsrlang.arrays import BoolArray, FloatArray
 from qsrlang.geometry.pose import Pose2
-from qsrlang.mixtures.conditionals import make_conditional
-from qsrlang.mixtures.layout import Layout
-from qsrlang.mixtures.plans import Plan
-from qsrlang.mixtures.regions import BoxConditional
-from qsrlang.mixtures.supports import Seat
-from qsrlang.mixtures.wedge import Wedge
+from qsrlang.mixtures.densities.regions import BoxConditional
+from qsrlang.mixtures.densities.stated import make_conditional
+from qsrlang.mixtures.draws.wedge import Wedge
+from qsrlang.mixtures.worlds.layout import Layout
+from qsrlang.mixtures.worlds.plans import Plan
+from qsrlang.mixtures.worlds.supports import Seat
 from qsrlang.relations.graph import RelationGraph
 
 PER_OBJECT = 3

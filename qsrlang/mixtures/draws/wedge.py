@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from qsrlang.arrays import FloatArray
-from qsrlang.mixtures.layout import Layout
-from qsrlang.mixtures.supports import Seat
+from qsrlang.mixtures.worlds.layout import Layout
+from qsrlang.mixtures.worlds.supports import Seat
 
 
 @dataclass(frozen=True, slots=True)

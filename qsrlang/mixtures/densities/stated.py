@@ -6,11 +6,11 @@ from collections.abc import Callable
 from typing import TypeAlias
 
 from qsrlang.geometry.pose import Pose2
-from qsrlang.mixtures.conditional import Conditional, FitConditional, frame_of, polar_conditional
-from qsrlang.mixtures.plans import Step
-from qsrlang.mixtures.regions import region_conditional
-from qsrlang.mixtures.standpoint import Anchor, Standpoint
-from qsrlang.mixtures.supports import Seat, in_region
+from qsrlang.mixtures.densities.conditional import Conditional, FitConditional, frame_of, polar_conditional
+from qsrlang.mixtures.densities.regions import region_conditional
+from qsrlang.mixtures.densities.standpoint import Anchor, Standpoint
+from qsrlang.mixtures.worlds.plans import Step
+from qsrlang.mixtures.worlds.supports import Seat, in_region
 from qsrlang.relations.graph import RelationGraph
 
 Anchors: TypeAlias = Callable[[Seat], Anchor]

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from qsrlang.arrays import BoolArray, FloatArray
-from qsrlang.mixtures.standpoint import Anchor
-from qsrlang.mixtures.supports import Seat
+from qsrlang.mixtures.densities.standpoint import Anchor
+from qsrlang.mixtures.worlds.supports import Seat
 from qsrlang.relations.graph import Landmark
 
 NOTHING = 0

@@ -13,11 +13,11 @@ from qsrlang.arrays import FloatArray
 from qsrlang.geometry.angles import unit
 from qsrlang.geometry.polygon import ConvexPolygon
 from qsrlang.language.syntax import Fit, Frame
-from qsrlang.mixtures.angles import bump
-from qsrlang.mixtures.density import PolarDensity
-from qsrlang.mixtures.stance import Boxes, Stance, half_box
-from qsrlang.mixtures.standpoint import Standpoint
-from qsrlang.mixtures.supports import Support
+from qsrlang.mixtures.densities.angles import bump
+from qsrlang.mixtures.densities.density import PolarDensity
+from qsrlang.mixtures.densities.stance import Boxes, Stance, half_box
+from qsrlang.mixtures.densities.standpoint import Standpoint
+from qsrlang.mixtures.worlds.supports import Support
 from qsrlang.relations.graph import AtomicRelation, Constraint, RelationGraph
 
 

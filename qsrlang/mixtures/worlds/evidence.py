@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from qsrlang.mixtures.chains import placed_by
-from qsrlang.mixtures.roles import instances_in_roles
+from qsrlang.mixtures.worlds.chains import placed_by
+from qsrlang.mixtures.worlds.roles import instances_in_roles
 from qsrlang.relations.graph import Choice, Constraint, RelationGraph
 
 

@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
-from qsrlang.mixtures.chains import needed_for
-from qsrlang.mixtures.evidence import constraints_on
-from qsrlang.mixtures.roles import instances_in_roles, is_unplaced_role, landmarks_of_role
+from qsrlang.mixtures.worlds.chains import needed_for
+from qsrlang.mixtures.worlds.evidence import constraints_on
+from qsrlang.mixtures.worlds.roles import instances_in_roles, is_unplaced_role, landmarks_of_role
 from qsrlang.relations.graph import Alternative, Authority, Choice, Constraint, Landmark, Pair, RelationGraph
 
 MIN_SHARE = 1e-9

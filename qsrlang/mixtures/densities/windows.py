@@ -1,8 +1,8 @@
-"""Whether formulas hold where objects are: relations as regions of the plane, sharp where their densities are not.
+"""Whether relations hold where objects are: parts of the plane, sharp where their densities are not.
 
 A direction holds in its arcs. A distance holds between its bounds, below where it begins at 0, and beyond where it
 ends at the edge. `on` and `in` hold where the relatum's outline contains the referent, `between` where it is seen so
-from either end. What is not placed holds in no relation.
+from either end.
 """
 
 from __future__ import annotations
@@ -14,50 +14,12 @@ import numpy as np
 
 from qsrlang.arrays import BoolArray, FloatArray
 from qsrlang.geometry.angles import wrap
-from qsrlang.geometry.pose import Pose2
-from qsrlang.language.syntax import And, Atom, Dimension, Formula, Not, Or, Uniform
-from qsrlang.mixtures.conditional import Conditional, EitherConditional, PolarConditional
-from qsrlang.mixtures.conditionals import make_conditional
-from qsrlang.mixtures.density import Rays
-from qsrlang.mixtures.draws import Drawn
-from qsrlang.mixtures.plans import Plan, asked_step
-from qsrlang.mixtures.sectors import Arcs, arcs_of
-from qsrlang.mixtures.stance import Stance
-from qsrlang.mixtures.worlds import World
+from qsrlang.language.syntax import Dimension, Uniform
+from qsrlang.mixtures.densities.conditional import Conditional, EitherConditional, PolarConditional
+from qsrlang.mixtures.densities.density import Rays
+from qsrlang.mixtures.densities.sectors import Arcs, arcs_of
+from qsrlang.mixtures.densities.stance import Stance
 from qsrlang.relations.calculus import Relation
-from qsrlang.relations.graph import RelationGraph
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Outlook:
-    """Draws of a world, in which formulas hold or do not."""
-
-    graph: RelationGraph
-    world: World
-    plan: Plan
-    drawn: Drawn
-    viewer: Pose2 | None
-
-    def holds(self, formula: Formula) -> BoolArray:
-        """Return in which draws (P,) a formula holds."""
-        match formula:
-            case Not(part=part):
-                return ~self.holds(part)
-            case And(parts=parts):
-                return np.asarray(np.logical_and.reduce([self.holds(part) for part in parts]))
-            case Or(parts=parts):
-                return np.asarray(np.logical_or.reduce([self.holds(part) for part in parts]))
-            case Atom():
-                return self._atom_holds(formula)
-
-    def _atom_holds(self, atom: Atom) -> BoolArray:
-        step = asked_step(self.graph, self.world, self.plan.seats, atom)
-        if step is None:
-            return np.zeros(len(self.drawn.logs), dtype=bool)
-        conditional = make_conditional(self.graph, step, self.drawn.layout.anchor, self.viewer)
-        points = self.drawn.points(step.referent)
-        relation = self.graph.relations[atom.relation.text]
-        return _inside(conditional, relation, self.graph.relations, points, self.drawn.states)
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,16 +50,17 @@ def share_inside(windows: Sequence[Window], rays: Rays, states: FloatArray) -> F
     return np.asarray((rays.weights * share * along).sum(axis=1))
 
 
-def _inside(
+def holds_at(
     conditional: Conditional,
     relation: Relation,
     relations: Mapping[str, Relation],
     points: FloatArray,
     states: FloatArray,
 ) -> BoolArray:
+    """Return whether a relation holds of points (P, 2), one for each state (P, n): (P,)."""
     match conditional:
         case EitherConditional(first=first, second=second):
-            return _inside(first, relation, relations, points, states) | _inside(
+            return holds_at(first, relation, relations, points, states) | holds_at(
                 second, relation, relations, points, states
             )
         case PolarConditional():

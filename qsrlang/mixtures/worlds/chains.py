@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Collection, Iterable
 
-from qsrlang.mixtures.roles import instances_in_roles
+from qsrlang.mixtures.worlds.roles import instances_in_roles
 from qsrlang.relations.graph import Constraint, RelationGraph
 
 

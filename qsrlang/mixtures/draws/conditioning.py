@@ -13,16 +13,16 @@ from qsrlang.arrays import BoolArray, FloatArray
 from qsrlang.errors import ImpossibleConditionError
 from qsrlang.geometry.pose import Pose2
 from qsrlang.language.syntax import Atom
-from qsrlang.mixtures.conditions import Condition, assumed_atoms, objects_of
-from qsrlang.mixtures.draws import draw, width_of
-from qsrlang.mixtures.events import Outlook
+from qsrlang.mixtures.draws.conditions import Condition, assumed_atoms, objects_of
+from qsrlang.mixtures.draws.drawing import draw, width_of
+from qsrlang.mixtures.draws.events import Outlook
+from qsrlang.mixtures.draws.uniforms import REPLICATES, lattices
+from qsrlang.mixtures.draws.wedges import conjuncts, tightest_first, wedges_of
 from qsrlang.mixtures.gaussian import fitted
-from qsrlang.mixtures.plans import Plan, plan_worlds
-from qsrlang.mixtures.solving import log_mean, log_mean_of
-from qsrlang.mixtures.supports import Seat
-from qsrlang.mixtures.uniforms import REPLICATES, lattices
-from qsrlang.mixtures.wedges import conjuncts, tightest_first, wedges_of
-from qsrlang.mixtures.worlds import World, enumerate_worlds
+from qsrlang.mixtures.solving.weighing import log_mean, log_mean_of
+from qsrlang.mixtures.worlds.enumeration import World, enumerate_worlds
+from qsrlang.mixtures.worlds.plans import Plan, plan_worlds
+from qsrlang.mixtures.worlds.supports import Seat
 from qsrlang.relations.graph import RelationGraph
 
 MIN_DRAWS = 100

@@ -11,8 +11,8 @@ import numpy as np
 import scipy
 
 from qsrlang.arrays import FloatArray, IntArray
-from qsrlang.mixtures.layout import Layout
-from qsrlang.mixtures.linear import Factor, Linear
+from qsrlang.mixtures.solving.linear import Factor, Linear
+from qsrlang.mixtures.worlds.layout import Layout
 
 DENSE = 96
 

@@ -9,10 +9,10 @@ import numpy as np
 
 from qsrlang.arrays import BoolArray
 from qsrlang.geometry.boxes import overlap
-from qsrlang.mixtures.draws import Drawn
-from qsrlang.mixtures.plans import Plan
-from qsrlang.mixtures.stance import half_box
-from qsrlang.mixtures.supports import Seat, in_region
+from qsrlang.mixtures.densities.stance import half_box
+from qsrlang.mixtures.draws.drawing import Drawn
+from qsrlang.mixtures.worlds.plans import Plan
+from qsrlang.mixtures.worlds.supports import Seat, in_region
 from qsrlang.relations.graph import ObjectClass, RelationGraph
 
 

@@ -6,11 +6,11 @@ import numpy as np
 
 from qsrlang.geometry.pose import Pose2
 from qsrlang.language.syntax import Atom
-from qsrlang.mixtures.conditional import frame_of, hand
-from qsrlang.mixtures.cones import turning_cone_probability
-from qsrlang.mixtures.plans import asked_step
-from qsrlang.mixtures.sectors import arcs_of
-from qsrlang.mixtures.solving import Solved
+from qsrlang.mixtures.densities.conditional import frame_of, hand
+from qsrlang.mixtures.densities.sectors import arcs_of
+from qsrlang.mixtures.solving.cones import turning_cone_probability
+from qsrlang.mixtures.solving.weighing import Solved
+from qsrlang.mixtures.worlds.plans import asked_step
 from qsrlang.relations.graph import RelationGraph
 
 _DIFFERENCE = np.array([[1.0, 0.0, -1.0, 0.0, 0.0], [0.0, 1.0, 0.0, -1.0, 0.0], [0.0, 0.0, 0.0, 0.0, 1.0]])

@@ -9,7 +9,7 @@ import numpy as np
 
 from qsrlang.arrays import BoolArray, FloatArray
 from qsrlang.language.syntax import Atom, Formula, atoms_of
-from qsrlang.mixtures.chains import depends_on
+from qsrlang.mixtures.worlds.chains import depends_on
 from qsrlang.relations.graph import RelationGraph
 
 

@@ -14,10 +14,10 @@ from qsrlang.arrays import FloatArray
 from qsrlang.geometry.pose import Pose2
 from qsrlang.language.syntax import Atom
 from qsrlang.mixtures.gaussian import definite
-from qsrlang.mixtures.plans import Plan, plan_worlds
-from qsrlang.mixtures.posterior import Posterior, posterior_of, posteriors_of
-from qsrlang.mixtures.supports import Seat
-from qsrlang.mixtures.worlds import MAX_WORLDS, World, enumerate_worlds
+from qsrlang.mixtures.solving.posterior import Posterior, posterior_of, posteriors_of
+from qsrlang.mixtures.worlds.enumeration import MAX_WORLDS, World, enumerate_worlds
+from qsrlang.mixtures.worlds.plans import Plan, plan_worlds
+from qsrlang.mixtures.worlds.supports import Seat
 from qsrlang.relations.graph import RelationGraph
 
 
@@ -64,7 +64,7 @@ class Assumed:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Solution:
+class SolvedWorlds:
     """Worlds solved, best first, and the prior mass of those that were `dropped`."""
 
     worlds: tuple[Solved, ...]
@@ -78,7 +78,7 @@ def solve_worlds(
     limit: int = MAX_WORLDS,
     asked: Sequence[Atom] = (),
     is_needed: bool = True,
-) -> Solution:
+) -> SolvedWorlds:
     """Return the worlds of all objects named, solved; relations of several components split them further.
 
     Their plans have the landmarks that bound the atoms `asked` about. Where all places are not needed, and no world is
@@ -100,7 +100,7 @@ def solve_worlds(
     ]
     weights = posterior_weights([world.weight for world in worlds], logs, placed).tolist()
     solved = zip(worlds, plans, weights, joints, strict=True)
-    return Solution(tuple(Solved(*one) for one in solved), found.dropped)
+    return SolvedWorlds(tuple(Solved(*one) for one in solved), found.dropped)
 
 
 def _given(posterior: Posterior) -> Posterior:

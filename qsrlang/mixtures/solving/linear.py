@@ -11,7 +11,7 @@ import numpy as np
 
 from qsrlang.arrays import FloatArray, IntArray
 from qsrlang.geometry.angles import rotation
-from qsrlang.mixtures.conditional import Conditional, Turning
+from qsrlang.mixtures.densities.conditional import Conditional, Turning
 
 _TINY = 1e-12
 

@@ -13,14 +13,14 @@ import numpy as np
 from qsrlang.arrays import FloatArray, IntArray
 from qsrlang.geometry.pose import Pose2
 from qsrlang.language.syntax import And, Atom, Formula, Not, Or
-from qsrlang.mixtures.conditional import PolarConditional
-from qsrlang.mixtures.conditionals import make_conditional
-from qsrlang.mixtures.events import Window, share_inside
-from qsrlang.mixtures.layout import Layout, compact_anchor
-from qsrlang.mixtures.linear import cubature
-from qsrlang.mixtures.plans import Step, asked_step, seats_read
-from qsrlang.mixtures.sectors import arcs_of
-from qsrlang.mixtures.solving import Solved
+from qsrlang.mixtures.densities.conditional import PolarConditional
+from qsrlang.mixtures.densities.sectors import arcs_of
+from qsrlang.mixtures.densities.stated import make_conditional
+from qsrlang.mixtures.densities.windows import Window, share_inside
+from qsrlang.mixtures.solving.linear import cubature
+from qsrlang.mixtures.solving.weighing import Solved
+from qsrlang.mixtures.worlds.layout import Layout, compact_anchor
+from qsrlang.mixtures.worlds.plans import Step, asked_step, seats_read
 from qsrlang.relations.graph import RelationGraph
 
 MAX_ATOMS = 10

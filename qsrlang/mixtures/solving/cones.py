@@ -8,7 +8,7 @@ import numpy as np
 from scipy.special import ndtr, owens_t
 
 from qsrlang.arrays import FloatArray
-from qsrlang.mixtures.sectors import Arcs
+from qsrlang.mixtures.densities.sectors import Arcs
 
 _HALF_TURN = 1e-9
 _HEADINGS = 9

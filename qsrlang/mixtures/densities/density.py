@@ -11,8 +11,8 @@ from qsrlang.errors import NoRoomError
 from qsrlang.geometry.angles import unit
 from qsrlang.geometry.polygon import ConvexPolygon
 from qsrlang.language.syntax import Density, Dimension, Uniform
-from qsrlang.mixtures.angles import Bump
-from qsrlang.mixtures.stance import Boxes, Stance
+from qsrlang.mixtures.densities.angles import Bump
+from qsrlang.mixtures.densities.stance import Boxes, Stance
 
 MIN_OVERLAP = 1e-12
 MIN_ROOM = 1e-3

@@ -11,8 +11,8 @@ import numpy as np
 from qsrlang import geometry
 from qsrlang.arrays import FloatArray
 from qsrlang.geometry.angles import TURN, rotation, unit
-from qsrlang.mixtures.conditional import Conditional, Turning
-from qsrlang.mixtures.standpoint import Standpoint
+from qsrlang.mixtures.densities.conditional import Conditional, Turning
+from qsrlang.mixtures.densities.standpoint import Standpoint
 from qsrlang.relations.graph import Constraint, RelationGraph
 
 if TYPE_CHECKING:

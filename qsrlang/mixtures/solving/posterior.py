@@ -13,12 +13,12 @@ import numpy as np
 
 from qsrlang.arrays import BoolArray, FloatArray, IntArray
 from qsrlang.geometry.pose import Pose2
-from qsrlang.mixtures.conditionals import make_conditional
-from qsrlang.mixtures.layout import Layout, compact_anchor
-from qsrlang.mixtures.linear import Factor, Linear
-from qsrlang.mixtures.plans import Plan, Step, seats_read
-from qsrlang.mixtures.supports import Seat
-from qsrlang.mixtures.system import DENSE, Solution, solve
+from qsrlang.mixtures.densities.stated import make_conditional
+from qsrlang.mixtures.solving.linear import Factor, Linear
+from qsrlang.mixtures.solving.system import DENSE, Solution, solve
+from qsrlang.mixtures.worlds.layout import Layout, compact_anchor
+from qsrlang.mixtures.worlds.plans import Plan, Step, seats_read
+from qsrlang.mixtures.worlds.supports import Seat
 from qsrlang.relations.graph import RelationGraph
 
 TOGETHER = 512

@@ -1,0 +1,1 @@
+"""What statements say of a place: polar densities, regions and fits, and where they hold."""

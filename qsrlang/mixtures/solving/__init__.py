@@ -1,0 +1,1 @@
+"""Worlds as Gaussians: equations, their solution, and probabilities without draws."""

@@ -1,0 +1,1 @@
+"""Combinations of alternatives that hold together, and in which order each places its objects."""
