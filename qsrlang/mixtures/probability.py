@@ -7,13 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from qsrlang.arrays import FloatArray
 from qsrlang.errors import ImpossibleConditionError
 from qsrlang.geometry.pose import Pose2
 from qsrlang.language.syntax import Atom, Formula, atoms_of
 from qsrlang.mixtures.draws.conditioning import Drawing, draw_scenes, effective_draws, ratio_error
 from qsrlang.mixtures.draws.conditions import Condition, assumed_atoms, conditions_on, objects_of
 from qsrlang.mixtures.solving.pairs import direction_probability
-from qsrlang.mixtures.solving.tables import expectation, truth_table
+from qsrlang.mixtures.solving.tables import MAX_ATOMS, TruthTables, truth_of
 from qsrlang.mixtures.solving.weighing import Assumed, Solved, solve_worlds
 from qsrlang.mixtures.weighed import Weighed
 from qsrlang.mixtures.worlds.enumeration import MAX_WORLDS
@@ -95,10 +96,13 @@ def _without_draws(
     atoms = (*atoms_of(formula), *assumed_atoms(conditions))
     names = objects_of(formula, *(one.formula for one in conditions))
     solution = solve_worlds(graph, names, viewer, limit, atoms, is_needed=False)
-    found = [_masses(graph, one, formula, conditions, atoms, viewer) for one in solution.worlds]
-    told = [one for one in found if one is not None]
-    if len(told) < len(found):
-        return None
+    telling = _Telling.of(graph, formula, conditions, atoms, viewer)
+    told = []
+    for one in solution.worlds:
+        found = telling.masses(one)
+        if found is None:
+            return None
+        told.append(found)
     masses = [one.weight * whole for one, (_, whole, _) in zip(solution.worlds, told, strict=True)]
     total = sum(masses)
     if not total > 0.0:
@@ -112,27 +116,45 @@ def _without_draws(
     return Proved(answer, worlds, shares)
 
 
-def _masses(
-    graph: RelationGraph,
-    solved: Solved,
-    formula: Formula,
-    conditions: tuple[Condition, ...],
-    atoms: Sequence[Atom],
-    viewer: Pose2 | None,
-) -> tuple[float, float, bool] | None:
-    """Return the mass of a world in which the formula and what is assumed hold, that of the latter, and if exact."""
-    found = truth_table(graph, solved, atoms, viewer)
-    if found is not None:
-        table, exact = found
-        assumed = [(one.formula, *one.factors) for one in conditions]
-        true = expectation(table, atoms, [(formula, 1.0, 0.0), *assumed])
-        return true, expectation(table, atoms, assumed), exact
-    if conditions or len(atoms) != 1:
-        return None
-    share = direction_probability(graph, solved, atoms[0], viewer)
-    if share is None:
-        return None
-    return expectation(np.array([1.0 - share, share]), atoms, [(formula, 1.0, 0.0)]), 1.0, False
+@dataclass(frozen=True, slots=True, eq=False)
+class _Telling:
+    """Where, among the combinations of atoms, a formula holds, and how conditions weigh them."""
+
+    graph: RelationGraph
+    tables: TruthTables
+    atoms: Sequence[Atom]
+    held: FloatArray
+    assumed: FloatArray | None
+    viewer: Pose2 | None
+
+    @classmethod
+    def of(
+        cls,
+        graph: RelationGraph,
+        formula: Formula,
+        conditions: tuple[Condition, ...],
+        atoms: Sequence[Atom],
+        viewer: Pose2 | None,
+    ) -> _Telling:
+        """Return what is to be told of a formula under conditions, all of whose `atoms` are given."""
+        if len(atoms) > MAX_ATOMS:
+            return cls(graph, TruthTables(graph, atoms, viewer), atoms, np.zeros(0), None, viewer)
+        factors = [one.factor(truth_of(one.formula, atoms)) for one in conditions]
+        assumed = np.prod(np.broadcast_arrays(*factors), axis=0) if factors else None
+        held = truth_of(formula, atoms) * (1.0 if assumed is None else assumed)
+        return cls(graph, TruthTables(graph, atoms, viewer), atoms, held, assumed, viewer)
+
+    def masses(self, solved: Solved) -> tuple[float, float, bool] | None:
+        """Return the mass of a world in which formula and conditions hold, that of the latter, and if exact."""
+        found = self.tables.of(solved)
+        if found is not None:
+            table, exact = found
+            whole = 1.0 if self.assumed is None else float((table * self.assumed).sum())
+            return float((table * self.held).sum()), whole, exact
+        if self.assumed is not None or len(self.atoms) != 1:
+            return None
+        share = direction_probability(self.graph, solved, self.atoms[0], self.viewer)
+        return None if share is None else (float(self.held @ [1.0 - share, share]), 1.0, False)
 
 
 def _by_draws(

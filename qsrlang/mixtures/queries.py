@@ -206,7 +206,7 @@ class KnowledgeBase:
         """Answer a query written in the language, such as `where Cup?` or `prob left-of(Cup, Keyboard)?`.
 
         What the query does not say of the circumstances is as it is for this knowledge. Raises LanguageError,
-        UnknownNameError, and UnansweredQueryError for what this release does not answer.
+        UnknownNameError, and UnansweredQueryError for `views`, which needs a map.
         """
         question = parse_query(query)
         known = self.under(_refined(self.circumstances, Circumstances.of(question.circumstances)))

@@ -14,8 +14,8 @@ from qsrlang.mixtures.draws.drawing import Drawn, draw, width_of
 from qsrlang.mixtures.draws.uniforms import independent
 from qsrlang.mixtures.gaussian import fitted
 from qsrlang.mixtures.solving.weighing import log_mean_of, posterior_weights
-from qsrlang.mixtures.worlds.enumeration import World, enumerate_worlds
-from qsrlang.mixtures.worlds.plans import Plan, plan_worlds
+from qsrlang.mixtures.worlds.enumeration import World
+from qsrlang.mixtures.worlds.plans import Plan, planned_worlds
 from qsrlang.mixtures.worlds.supports import Seat
 from qsrlang.relations.graph import RelationGraph
 
@@ -39,9 +39,7 @@ def sampled_worlds(
     graph: RelationGraph, target: str, viewer: Pose2 | None, samples: int, rng: np.random.Generator
 ) -> tuple[Sequence[SampledWorld], float]:
     """Return every world of a target with `samples` draws, and the prior mass of those left out."""
-    found = enumerate_worlds(graph, target)
-    worlds = [world for world in found if world.weight > 0.0]
-    plans = plan_worlds(graph, worlds, target)
+    worlds, plans, dropped = planned_worlds(graph, (target,))
     drawn = [draw(graph, plan, viewer, independent(samples, width_of(plan), rng)) for plan in plans]
     logs = [log_mean_of(one.logs) for one in drawn]
     if not np.isfinite(logs).any():
@@ -51,4 +49,4 @@ def sampled_worlds(
         for world, plan in zip(worlds, plans, strict=True)
     ]
     weights = posterior_weights([world.weight for world in worlds], logs, placed).tolist()
-    return [SampledWorld(*one) for one in zip(worlds, plans, drawn, weights, strict=True)], found.dropped
+    return [SampledWorld(*one) for one in zip(worlds, plans, drawn, weights, strict=True)], dropped

@@ -11,17 +11,17 @@ import numpy as np
 from qsrlang.arrays import BoolArray, FloatArray
 from qsrlang.errors import ImpossibleConditionError
 from qsrlang.geometry.pose import Pose2
+from qsrlang.mixtures.draws.bounding import bounds_of, conjuncts, tightest_first
+from qsrlang.mixtures.draws.bounds import Bound
 from qsrlang.mixtures.draws.collisions import Body, collide, pairs_apart
 from qsrlang.mixtures.draws.conditioning import MAX_DRAWN, factors_of
 from qsrlang.mixtures.draws.conditions import Condition, assumed_atoms, objects_of
 from qsrlang.mixtures.draws.drawing import Drawn, draw, width_of
 from qsrlang.mixtures.draws.events import Outlook
 from qsrlang.mixtures.draws.uniforms import independent
-from qsrlang.mixtures.draws.wedge import Wedge
-from qsrlang.mixtures.draws.wedges import conjuncts, tightest_first, wedges_of
 from qsrlang.mixtures.solving.weighing import log_mean, log_mean_of
-from qsrlang.mixtures.worlds.enumeration import World, enumerate_worlds
-from qsrlang.mixtures.worlds.plans import Plan, plan_worlds
+from qsrlang.mixtures.worlds.enumeration import World
+from qsrlang.mixtures.worlds.plans import Plan, planned_worlds
 from qsrlang.relations.graph import RelationGraph
 
 CHUNK = 8192
@@ -81,7 +81,7 @@ class _Source:
     graph: RelationGraph
     world: World
     plan: Plan
-    wedges: Mapping[str, tuple[Wedge, ...]]
+    bounds: Mapping[str, tuple[Bound, ...]]
     conditions: tuple[Condition, ...]
     apart: tuple[tuple[Body, Body], ...]
     viewer: Pose2 | None
@@ -89,7 +89,7 @@ class _Source:
     def drawn(self, count: int, rng: np.random.Generator) -> Drawn:
         """Return scenes, those that collide or break a condition among them."""
         uniforms = independent(count, width_of(self.plan), rng)
-        return draw(self.graph, self.plan, self.viewer, uniforms, self.wedges)
+        return draw(self.graph, self.plan, self.viewer, uniforms, self.bounds)
 
     def passes(self, drawn: Drawn, rng: np.random.Generator) -> BoolArray:
         """Return which scenes (P,) pass: each condition with its probability, and then none that collide."""
@@ -101,7 +101,7 @@ class _Source:
     @property
     def is_even(self) -> bool:
         """Whether all scenes weigh the same."""
-        return not (self.plan.fused or self.wedges)
+        return not (self.plan.fused or self.bounds)
 
 
 def sample_scenes(
@@ -174,14 +174,13 @@ def _sources(
     graph: RelationGraph, names: Sequence[str], conditions: Sequence[Condition], viewer: Pose2 | None
 ) -> list[_Source]:
     objects = tuple(dict.fromkeys([*names, *objects_of(*(one.formula for one in conditions))]))
-    worlds = [one for one in enumerate_worlds(graph, *objects, limit=MAX_DRAWN) if one.weight > 0.0]
     parts = conjuncts(conditions)
+    worlds, plans, _ = planned_worlds(graph, objects, MAX_DRAWN, assumed_atoms(conditions))
     sources = []
-    plans = plan_worlds(graph, worlds, *objects, asked=assumed_atoms(conditions))
     for world, plan in zip(worlds, plans, strict=True):
         ordered = tightest_first(graph, world, plan, parts)
-        wedges, rest = wedges_of(graph, world, ordered, parts, viewer)
-        sources.append(_Source(graph, world, ordered, wedges, rest, pairs_apart(graph, plan), viewer))
+        bounds, rest = bounds_of(graph, world, ordered, parts, viewer)
+        sources.append(_Source(graph, world, ordered, bounds, rest, pairs_apart(graph, plan), viewer))
     return sources
 
 

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass, field
 from enum import IntEnum
-from typing import TypeAlias
+from typing import TypeAlias, TypeVar, cast
 
 from qsrlang.language.source import Span
 from qsrlang.language.syntax import Atom, Fit, Formula, Frame
 from qsrlang.relations.calculus import Relation
+
+_T = TypeVar("_T")
+MAX_DERIVED, MAX_SIZE = 64, 256
 
 
 @dataclass(frozen=True, slots=True)
@@ -169,6 +172,7 @@ class RelationGraph:
     _instances_of: Mapping[str, tuple[Landmark, ...]] = field(init=False, repr=False, compare=False)
     _kinds: Mapping[str, str] = field(init=False, repr=False, compare=False)
     evidence: tuple[str, ...] = field(init=False, repr=False, compare=False)
+    _derived: dict[object, object] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         choices: dict[str, list[Choice]] = defaultdict(list)
@@ -184,6 +188,20 @@ class RelationGraph:
         object.__setattr__(self, "evidence", tuple(sorted(self._referents() & instances.keys())))
         object.__setattr__(self, "_choices_of", {name: tuple(found) for name, found in choices.items()})
         object.__setattr__(self, "_instances_of", {name: tuple(found) for name, found in instances.items()})
+
+    def derived(self, key: Hashable, derive: Callable[[], _T], size: Callable[[_T], int]) -> _T:
+        """Return what follows from the graph alone, derived when it is first asked for.
+
+        Up to MAX_DERIVED things of a `size` up to MAX_SIZE are kept.
+        """
+        if key in self._derived:
+            return cast(_T, self._derived[key])
+        found = derive()
+        if size(found) <= MAX_SIZE:
+            if len(self._derived) >= MAX_DERIVED:
+                self._derived.clear()
+            self._derived[key] = found
+        return found
 
     def _referents(self) -> set[str]:
         return {

@@ -86,7 +86,7 @@ def test_a_query_answers_as_the_method_does():
 
 
 def test_views_are_of_a_map_which_knowledge_has_none_of():
-    with pytest.raises(UnansweredQueryError, match="^'views'") as raised:
+    with pytest.raises(UnansweredQueryError, match=r"^'views'") as raised:
         KNOWN.ask("views Cup?")
     assert raised.value.verb == "views"
     assert "\n" not in str(raised.value)

@@ -23,11 +23,12 @@ from qsrlang.relations.graph import AtomicRelation, Constraint, RelationGraph
 
 class Turning(NamedTuple):
     """Mean (2,) and covariance (2, 2) of x - relatum in a frame that turns with the relatum's heading, the same
-    wherever it stands.
+    wherever it stands; where it is `fixed`, in the map frame, whatever that heading is.
     """
 
     mean: FloatArray
     covariance: FloatArray
+    fixed: bool = False
 
 
 class Conditional(Protocol):
@@ -60,12 +61,20 @@ class PolarConditional:
 
     def turning(self, heading: float, is_certain: bool) -> Turning | None:
         """Return the moments in the relatum's frame, unless they depend on a place: of a support, viewer or relatum."""
+        if self._is_fixed:
+            return _turning(self.density, (0.5 * np.pi,) * len(self.frames), self.part)._replace(fixed=True)
         axes = self._turning_axes(heading, is_certain)
         return None if axes is None else _turning(self.density, axes, self.part)
 
+    @property
+    def _is_fixed(self) -> bool:
+        """Whether all axes are the map's, and no box turns with the relatum."""
+        is_alone = self.standpoint.second is None and self.density.support is None
+        return is_alone and self.density.boxes.are_points and set(self.frames) == {Frame.ABSOLUTE}
+
     def turns(self, heading: float, is_certain: bool) -> bool:
         """Return whether it is the same in the relatum's frame, wherever that is."""
-        return self._turning_axes(heading, is_certain) is not None
+        return self._is_fixed or self._turning_axes(heading, is_certain) is not None
 
     def _turning_axes(self, heading: float, is_certain: bool) -> tuple[float, ...] | None:
         if self.standpoint.second or self.density.support:
@@ -104,12 +113,13 @@ class FitConditional:
 
     def turning(self, heading: float, is_certain: bool) -> Turning | None:
         """Return the moments in the relatum's frame, unless the axis depends on where the relatum is."""
-        stand = self.standpoint
+        stand, fixed = self.standpoint, self.frame is Frame.ABSOLUTE
         axes = stand.relatum.turning_axes((self.frame,), stand.viewer, heading, is_certain)
+        axes = (0.5 * np.pi,) if fixed else axes
         if axes is None or stand.second:
             return None
         basis = _bases(np.array(axes), self.frame)[0]
-        return Turning(basis @ np.array(self.fit.mean), basis @ self._covariance() @ basis.T)
+        return Turning(basis @ np.array(self.fit.mean), basis @ self._covariance() @ basis.T, fixed)
 
     def moments(self, states: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return mean (P, 2) and covariance (P, 2, 2) of x."""

@@ -13,15 +13,15 @@ from qsrlang.arrays import BoolArray, FloatArray
 from qsrlang.errors import ImpossibleConditionError
 from qsrlang.geometry.pose import Pose2
 from qsrlang.language.syntax import Atom
+from qsrlang.mixtures.draws.bounding import bounds_of, conjuncts, tightest_first
 from qsrlang.mixtures.draws.conditions import Condition, assumed_atoms, objects_of
 from qsrlang.mixtures.draws.drawing import draw, width_of
 from qsrlang.mixtures.draws.events import Outlook
 from qsrlang.mixtures.draws.uniforms import REPLICATES, lattices
-from qsrlang.mixtures.draws.wedges import conjuncts, tightest_first, wedges_of
 from qsrlang.mixtures.gaussian import fitted
 from qsrlang.mixtures.solving.weighing import log_mean, log_mean_of
-from qsrlang.mixtures.worlds.enumeration import World, enumerate_worlds
-from qsrlang.mixtures.worlds.plans import Plan, plan_worlds
+from qsrlang.mixtures.worlds.enumeration import World
+from qsrlang.mixtures.worlds.plans import Plan, planned_worlds
 from qsrlang.mixtures.worlds.supports import Seat
 from qsrlang.relations.graph import RelationGraph
 
@@ -80,10 +80,8 @@ def draw_scenes(
     ImpossibleConditionError.
     """
     objects = tuple(dict.fromkeys([*names, *objects_of(*(one.formula for one in conditions))]))
-    likely = enumerate_worlds(graph, *objects, limit=MAX_DRAWN)
-    worlds = [one for one in likely if one.weight > 0.0]
     asked = (*asked, *assumed_atoms(conditions))
-    plans = plan_worlds(graph, worlds, *objects, asked=asked)
+    worlds, plans, dropped = planned_worlds(graph, objects, MAX_DRAWN, asked)
     drawn = [
         _drawn(graph, world, plan, conditions, drawing) for world, plan in zip(worlds, plans, strict=True)
     ]
@@ -96,7 +94,7 @@ def draw_scenes(
     total = sum(float(one.weights.sum()) for one in found)
     if not total > 0.0:
         raise ImpossibleConditionError([one.text for one in conditions], drawing.samples)
-    return tuple(WorldDraws(one.outlook, one.weights / total) for one in found), likely.dropped
+    return tuple(WorldDraws(one.outlook, one.weights / total) for one in found), dropped
 
 
 def ratio_error(scenes: Iterable[WorldDraws], held: Iterable[BoolArray], ratio: float) -> float:
@@ -123,10 +121,10 @@ def _drawn(
     """Return draws of a world, and the factor (P,) of each by the conditions that it was not drawn inside of."""
     parts = conjuncts(conditions)
     plan = tightest_first(graph, world, plan, parts)
-    wedges, rest = wedges_of(graph, world, plan, parts, drawing.viewer)
+    bounds, rest = bounds_of(graph, world, plan, parts, drawing.viewer)
     count = max(MIN_DRAWS, round(drawing.samples * world.weight))
     uniforms = lattices(count, width_of(plan), drawing.rng)
-    outlook = Outlook(graph, world, plan, draw(graph, plan, drawing.viewer, uniforms, wedges), drawing.viewer)
+    outlook = Outlook(graph, world, plan, draw(graph, plan, drawing.viewer, uniforms, bounds), drawing.viewer)
     return outlook, factors_of(outlook, rest)
 
 

@@ -14,14 +14,14 @@ from qsrlang.arrays import BoolArray, FloatArray
 from qsrlang.geometry.pose import Pose2
 from qsrlang.mixtures.densities.regions import BoxConditional
 from qsrlang.mixtures.densities.stated import make_conditional
-from qsrlang.mixtures.draws.wedge import Wedge
+from qsrlang.mixtures.draws.bounds import Bound
 from qsrlang.mixtures.worlds.layout import Layout
 from qsrlang.mixtures.worlds.plans import Plan
 from qsrlang.mixtures.worlds.supports import Seat
 from qsrlang.relations.graph import RelationGraph
 
 PER_OBJECT = 3
-NO_WEDGES: Mapping[str, tuple[Wedge, ...]] = MappingProxyType({})
+NO_BOUNDS: Mapping[str, tuple[Bound, ...]] = MappingProxyType({})
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -61,11 +61,11 @@ def draw(
     plan: Plan,
     viewer: Pose2 | None,
     uniforms: FloatArray,
-    wedges: Mapping[str, tuple[Wedge, ...]] = NO_WEDGES,
+    bounds: Mapping[str, tuple[Bound, ...]] = NO_BOUNDS,
 ) -> Drawn:
     """Draw landmarks and objects in the order of the plan, each made of three of the uniform numbers (P, width).
 
-    Objects that lie anywhere in a region are drawn inside of the wedges given for them.
+    Objects that lie anywhere in a region are drawn inside of the bounds given for them.
     """
     layout = plan.layout
     states = np.tile(layout.mean, (len(uniforms), 1))
@@ -85,9 +85,9 @@ def draw(
             continue
         numbers = uniforms[:, used : used + PER_OBJECT]
         used += PER_OBJECT
-        inside = wedges.get(step.referent.block, ())
+        inside = bounds.get(step.referent.block, ())
         if inside and isinstance(conditional, BoxConditional):
-            lines = [line for wedge in inside for line in wedge.lines(layout, states)]
+            lines = [line for bound in inside for line in bound.lines(layout, states)]
             states[:, place], more = conditional.sample_inside(states, numbers, lines)
             clipping += more
         else:

@@ -48,7 +48,10 @@ class Factor:
     def linearised(self, mean: FloatArray, covariance: FloatArray) -> Linear:
         """Return the equation for its columns distributed as N(mean, covariance): (K,), (K, K)."""
         if self.turning is not None:
-            return _turned(self.turning, float(mean[2]), float(covariance[2, 2]), len(mean))
+            heading, variance = (
+                (0.0, 0.0) if self.turning.fixed else (float(mean[2]), float(covariance[2, 2]))
+            )
+            return _turned(self.turning, heading, variance, len(mean))
         return _statistically(self.conditional, mean.tobytes(), covariance.tobytes(), self.orientation)  # type: ignore[arg-type]
 
     def linearised_each(self, means: FloatArray, covariances: FloatArray) -> Linear:
@@ -67,7 +70,7 @@ def _turned(turning: Turning, heading: float, variance: float, size: int) -> Lin
     E R(h) = e^{-v/2} R(heading), Cov(R(h) m, h) = v e^{-v/2} R'(heading) m (Stein), and twice the angle gives second
     moments: E R M R^T = tr M / 2 I + e^{-2v} R (M - tr M / 2 I) R^T for a symmetric M.
     """
-    (mx, my), square = turning.mean, turning.covariance
+    (mx, my), square, _ = turning
     cos, sin = math.cos(heading), math.sin(heading)
     turn = np.array([[cos, -sin], [sin, cos]])
     slope = np.zeros((2, size))

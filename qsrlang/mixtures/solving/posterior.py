@@ -106,7 +106,7 @@ def _factors(steps: Sequence[Step], layout: Layout, free: BoolArray, making: _Ma
     for key, step in distinct.items():
         said = make_conditional(making.graph, step, anchor, making.viewer)
         turning = said.turning(float(layout.mean[columns[2]]), not is_free[2])
-        bends = bool(is_free.any() if turning is None else is_free[2])
+        bends = bool(is_free.any() if turning is None else is_free[2] and not turning.fixed)
         made[key] = Factor(referent, columns, said, turning, bends, making.orientation)
     return [made[id(step.constraint)] for step in steps]
 
@@ -133,7 +133,7 @@ def _forward(
     """
     means = np.tile(layout.mean, (count, 1))
     is_needed = layout.size <= DENSE and all(step.places for step in steps)
-    is_needed = is_needed or any(one.bends for said in factors for one in said)
+    is_needed = is_needed or any(one.bends and one.turning is None for said in factors for one in said)
     joints = np.tile(np.diag(layout.variance), (count, 1, 1)) if is_needed else None
     equations = []
     for step, said in zip(steps, factors, strict=True):

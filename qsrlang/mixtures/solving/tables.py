@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache, partial
+from functools import lru_cache, partial, reduce
 from itertools import product
 
 import numpy as np
 
-from qsrlang.arrays import FloatArray, IntArray
+from qsrlang.arrays import BoolArray, FloatArray, IntArray
 from qsrlang.geometry.pose import Pose2
 from qsrlang.language.syntax import And, Atom, Formula, Not, Or
 from qsrlang.mixtures.densities.conditional import PolarConditional
@@ -21,91 +21,124 @@ from qsrlang.mixtures.solving.linear import cubature
 from qsrlang.mixtures.solving.weighing import Solved
 from qsrlang.mixtures.worlds.layout import Layout, compact_anchor
 from qsrlang.mixtures.worlds.plans import Step, asked_step, seats_read
+from qsrlang.mixtures.worlds.supports import Seat
 from qsrlang.relations.graph import RelationGraph
 
 MAX_ATOMS = 10
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Asked:
+    """The atoms, by their numbers, that are asked of one pair, each as a step."""
+
+    numbers: tuple[int, ...]
+    steps: tuple[Step, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Pair:
     """One density that was stated of a pair, the windows of atoms on it, and the columns (K,) of what they read.
 
-    It is `certain` where it is the same in every state: it turns with a heading that is certain, or nothing that it
-    reads is open.
+    There is one `table` of them (2, …, 2) where it is the same in every state: where it turns with a heading that is
+    certain, or nothing that it reads is open.
     """
 
     density: PolarConditional
     windows: tuple[Window, ...]
     columns: IntArray
-    certain: bool
+    table: FloatArray | None
 
 
-def truth_table(
-    graph: RelationGraph, solved: Solved, atoms: Sequence[Atom], viewer: Pose2 | None
-) -> tuple[FloatArray, bool] | None:
-    """Return P(atoms true or false) (2, …, 2) in a world, one axis an atom, 1 for true, and whether that is exact.
+class TruthTables:
+    """P(atoms true or false) (2, …, 2) in worlds, one axis an atom, 1 for true.
 
-    None where only draws tell. Each pair that is asked about has to be one of which one stated density alone tells;
-    where nothing is fused and those are certain, different pairs are independent. Of one pair, what its density reads
-    may be open, and a Gaussian. Atoms on what is not placed are false.
+    Worlds that place the same things, and those by the same statement, share what is found of a pair.
     """
-    if solved.plan.fused or len(atoms) > MAX_ATOMS:
-        return None
-    asked: dict[tuple[str, str], list[tuple[int, Step]]] = defaultdict(list)
-    table = np.ones((1,) * len(atoms))
-    for number, atom in enumerate(atoms):
-        step = asked_step(graph, solved.world, solved.plan.seats, atom)
-        if step is None:
-            table = table * _along(np.array([1.0, 0.0]), (number,), len(atoms))
-        else:
-            asked[step.referent.block, step.relatum.block].append((number, step))
-    exact = True
-    for group in asked.values():
-        pair = _pair(graph, solved, [(atoms[number], step) for number, step in group], viewer)
-        if pair is None or not (pair.certain or len(asked) == 1):
+
+    def __init__(self, graph: RelationGraph, atoms: Sequence[Atom], viewer: Pose2 | None) -> None:
+        self._graph, self._atoms, self._viewer = graph, tuple(atoms), viewer
+        self._relations = [graph.relations[atom.relation.text] for atom in atoms]
+        self._arcs = [arcs_of(one, graph.relations) for one in self._relations]
+        self._asked: dict[int, tuple[Layout, tuple[Asked, ...]]] = {}
+        self._pairs: dict[tuple[int, int, int], Pair | None] = {}
+
+    def of(self, solved: Solved) -> tuple[FloatArray, bool] | None:
+        """Return the table of a world and whether it is exact; None where only draws tell.
+
+        Each pair that is asked about has to be one of which one stated density alone tells; where nothing is fused and
+        those are certain, different pairs are independent. Of one pair, what its density reads may be open, and a
+        Gaussian. Atoms on what is not placed are false.
+        """
+        if solved.plan.fused or len(self._atoms) > MAX_ATOMS:
             return None
-        exact &= pair.certain
-        table = table * _along(_table(pair, solved), [number for number, _ in group], len(atoms))
-    return table, exact
+        asked = self._asked_in(solved)
+        placing = {step.referent: step for step in solved.plan.steps if step.places}
+        table, exact = np.ones((1,) * len(self._atoms)), True
+        for one in asked:
+            pair = self._pair(solved, one, placing)
+            if pair is None or (pair.table is None and len(asked) > 1):
+                return None
+            exact &= pair.table is not None
+            shares = _averaged(pair, solved) if pair.table is None else pair.table
+            table = table * _along(shares, one.numbers, len(self._atoms))
+        placed = {number for one in asked for number in one.numbers}
+        for number in set(range(len(self._atoms))) - placed:
+            table = table * _along(np.array([1.0, 0.0]), (number,), len(self._atoms))
+        return table, exact
+
+    def _asked_in(self, solved: Solved) -> tuple[Asked, ...]:
+        """Return what is asked in worlds of one layout, pair by pair."""
+        layout = solved.plan.layout
+        if id(layout) not in self._asked:
+            groups: dict[tuple[Seat, Seat], list[tuple[int, Step]]] = defaultdict(list)
+            for number, atom in enumerate(self._atoms):
+                step = asked_step(self._graph, solved.world, solved.plan.seats, atom)
+                if step is not None:
+                    groups[step.referent, step.relatum].append((number, step))
+            asked = tuple(Asked(*zip(*group, strict=True)) for group in groups.values())
+            self._asked[id(layout)] = layout, asked
+        return self._asked[id(layout)][1]
+
+    def _pair(self, solved: Solved, asked: Asked, placing: Mapping[Seat, Step]) -> Pair | None:
+        step = placing.get(asked.steps[0].referent)
+        if step is None or step.relatum != asked.steps[0].relatum or step.second or asked.steps[0].second:
+            return None
+        key = (id(solved.plan.layout), id(step.constraint), asked.numbers[0])
+        if key not in self._pairs:
+            self._pairs[key] = self._read(solved.plan.layout, step, asked)
+        return self._pairs[key]
+
+    def _read(self, layout: Layout, placing: Step, asked: Asked) -> Pair | None:
+        seats = seats_read(placing, *asked.steps)
+        anchor = partial(compact_anchor, seats)
+        said = [make_conditional(self._graph, one, anchor, self._viewer) for one in (placing, *asked.steps)]
+        polar = [one for one in said if isinstance(one, PolarConditional)]
+        if len(polar) < len(said):
+            return None
+        windows = tuple(
+            Window(seen, self._relations[number], self._arcs[number])
+            for seen, number in zip(polar[1:], asked.numbers, strict=True)
+        )
+        columns = np.array([column for seat in seats for column in layout.pose(seat)])
+        certain = _is_certain(polar, layout, columns)
+        mean, none = layout.mean[columns], np.zeros((len(columns),) * 2)
+        table = _shares(polar[0], windows, mean.tobytes(), none.tobytes()) if certain else None
+        return Pair(polar[0], windows, columns, table)
 
 
-def expectation(
-    table: FloatArray, atoms: Sequence[Atom], factors: Sequence[tuple[Formula, float, float]]
-) -> float:
-    """Return E of a product of factors under a truth table: a formula each, its value if true, and if false."""
-    number = {id(atom): at for at, atom in enumerate(atoms)}
-    total = 0.0
-    for values in product((0, 1), repeat=len(atoms)):
-        mass = float(table[values])
-        for formula, if_true, if_false in factors if mass > 0.0 else ():
-            mass *= if_true if _holds(formula, values, number) else if_false
-        total += mass
-    return total
-
-
-def _pair(
-    graph: RelationGraph, solved: Solved, group: Sequence[tuple[Atom, Step]], viewer: Pose2 | None
-) -> Pair | None:
-    first = group[0][1]
-    placing = [one for one in solved.plan.steps if one.referent == first.referent]
-    if len(placing) != 1 or placing[0].relatum != first.relatum or placing[0].second or first.second:
-        return None
-    seats = seats_read(placing[0], *(step for _, step in group))
-    anchor = partial(compact_anchor, seats)
-    said = [
-        make_conditional(graph, step, anchor, viewer) for step in (placing[0], *(step for _, step in group))
-    ]
-    polar = [one for one in said if isinstance(one, PolarConditional)]
-    if len(polar) < len(said):
-        return None
-    density, *seen = polar
-    windows = []
-    for window, (atom, _) in zip(seen, group, strict=True):
-        relation = graph.relations[atom.relation.text]
-        windows.append(Window(window, relation, arcs_of(relation, graph.relations)))
-    layout = solved.plan.layout
-    columns = np.array([column for seat in seats for column in layout.pose(seat)])
-    return Pair(density, tuple(windows), columns, _is_certain(polar, layout, columns))
+def truth_of(formula: Formula, atoms: Sequence[Atom]) -> BoolArray:
+    """Return whether a formula holds for each combination of its atoms being true or false: (2, …, 2)."""
+    match formula:
+        case Atom():
+            at = next(number for number, atom in enumerate(atoms) if atom is formula)
+            held: BoolArray = np.array([False, True])
+            return held.reshape([2 if axis == at else 1 for axis in range(len(atoms))])
+        case Not(part=part):
+            return ~truth_of(part, atoms)
+        case And(parts=parts):
+            return reduce(np.logical_and, (truth_of(part, atoms) for part in parts))
+        case Or(parts=parts):
+            return reduce(np.logical_or, (truth_of(part, atoms) for part in parts))
 
 
 def _is_certain(polar: Sequence[PolarConditional], layout: Layout, columns: IntArray) -> bool:
@@ -114,13 +147,9 @@ def _is_certain(polar: Sequence[PolarConditional], layout: Layout, columns: IntA
     return not is_free.any() or (not is_free[2] and all(one.turns(heading, True) for one in polar))
 
 
-def _table(pair: Pair, solved: Solved) -> FloatArray:
+def _averaged(pair: Pair, solved: Solved) -> FloatArray:
     """Return P(atoms of a pair true or false) (2, …, 2), over a cubature of what its density reads."""
-    if pair.certain:
-        mean, covariance = solved.plan.layout.mean[pair.columns], np.zeros((len(pair.columns),) * 2)
-    else:
-        posterior = solved.posterior
-        mean, covariance = posterior.mean[pair.columns], posterior.covariance(pair.columns)
+    mean, covariance = solved.posterior.mean[pair.columns], solved.posterior.covariance(pair.columns)
     return _shares(pair.density, pair.windows, mean.tobytes(), covariance.tobytes())
 
 
@@ -149,15 +178,3 @@ def _shares(
 def _along(table: FloatArray, numbers: Sequence[int], count: int) -> FloatArray:
     """Return a table over some atoms, in rising order, as one over all of them."""
     return table.reshape([2 if number in numbers else 1 for number in range(count)])
-
-
-def _holds(formula: Formula, values: Sequence[int], number: Mapping[int, int]) -> bool:
-    match formula:
-        case Atom():
-            return bool(values[number[id(formula)]])
-        case Not(part=part):
-            return not _holds(part, values, number)
-        case And(parts=parts):
-            return all(_holds(part, values, number) for part in parts)
-        case Or(parts=parts):
-            return any(_holds(part, values, number) for part in parts)

@@ -15,8 +15,8 @@ from qsrlang.geometry.pose import Pose2
 from qsrlang.language.syntax import Atom
 from qsrlang.mixtures.gaussian import definite
 from qsrlang.mixtures.solving.posterior import Posterior, posterior_of, posteriors_of
-from qsrlang.mixtures.worlds.enumeration import MAX_WORLDS, World, enumerate_worlds
-from qsrlang.mixtures.worlds.plans import Plan, plan_worlds
+from qsrlang.mixtures.worlds.enumeration import MAX_WORLDS, World
+from qsrlang.mixtures.worlds.plans import Plan, PlannedWorlds, planned_worlds
 from qsrlang.mixtures.worlds.supports import Seat
 from qsrlang.relations.graph import RelationGraph
 
@@ -65,10 +65,11 @@ class Assumed:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SolvedWorlds:
-    """Worlds solved, best first, and the prior mass of those that were `dropped`."""
+    """Worlds solved, best first, the prior mass of those that were `dropped`, and what they were solved from."""
 
     worlds: tuple[Solved, ...]
     dropped: float
+    planned: PlannedWorlds
 
 
 def solve_worlds(
@@ -84,9 +85,21 @@ def solve_worlds(
     Their plans have the landmarks that bound the atoms `asked` about. Where all places are not needed, and no world is
     to be weighed by them, they are found when they are asked for.
     """
-    found = enumerate_worlds(graph, *names, limit=limit, in_parts=True)
-    worlds = [world for world in found if world.weight > 0.0]
-    plans = plan_worlds(graph, worlds, *names, asked=asked)
+    planned = planned_worlds(graph, tuple(names), limit, asked, in_parts=True)
+    key = (id(planned), viewer, is_needed)
+    return graph.derived(
+        key, lambda: _solved(graph, planned, names, viewer, is_needed), lambda found: len(found.worlds)
+    )
+
+
+def _solved(
+    graph: RelationGraph,
+    planned: PlannedWorlds,
+    names: Sequence[str],
+    viewer: Pose2 | None,
+    is_needed: bool,
+) -> SolvedWorlds:
+    worlds, plans, dropped = planned
     if is_needed or any(plan.fused for plan in plans):
         posteriors = posteriors_of(graph, plans, viewer)
         joints: list[Callable[[], Posterior]] = [partial(_given, one) for one in posteriors]
@@ -100,7 +113,7 @@ def solve_worlds(
     ]
     weights = posterior_weights([world.weight for world in worlds], logs, placed).tolist()
     solved = zip(worlds, plans, weights, joints, strict=True)
-    return SolvedWorlds(tuple(Solved(*one) for one in solved), found.dropped)
+    return SolvedWorlds(tuple(Solved(*one) for one in solved), dropped, planned)
 
 
 def _given(posterior: Posterior) -> Posterior:

@@ -167,22 +167,23 @@ class Draft:
         act(self)
 
     def _after(self, decision: Decision, among: Sequence[Decision]) -> Draft:
-        draft = replace(
-            self,
-            pending=self.pending.copy(),
-            likeness=self.likeness * decision[0] / max(share for share, *_ in among),
-            depth=self.depth + 1,
-            visited=self.visited.copy(),
-            covered=self.covered.copy(),
-            closed=self.closed.copy(),
-            decided=self.decided.copy(),
-            heard=self.heard.copy(),
-            constraints=self.constraints.copy(),
-            relata=self.relata.copy(),
-            whole=self.whole.copy(),
-            bindings=self.bindings.copy(),
-            aliases=self.aliases.copy(),
-            absent=self.absent.copy(),
+        draft = Draft(
+            self.pending.copy(),
+            self.telling,
+            self.weight,
+            self.likeness * decision[0] / max(share for share, *_ in among),
+            self.depth + 1,
+            self.visited.copy(),
+            self.covered.copy(),
+            self.closed.copy(),
+            self.decided.copy(),
+            self.heard.copy(),
+            self.constraints.copy(),
+            self.relata.copy(),
+            self.whole.copy(),
+            self.bindings.copy(),
+            self.aliases.copy(),
+            self.absent.copy(),
         )
         draft._decide(decision)
         return draft

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -20,13 +20,17 @@ class Layout:
     """Where each thing's columns start: x, y and heading of a landmark, x and y of an object; column 0 is always 0.
 
     `mean` and `variance` (n,) are what is known before any step, that of landmarks; of objects, whose columns are
-    `open` (n,), nothing is.
+    `open` (n,), nothing is. Columns (n,) that are not certain are `free`.
     """
 
     starts: Mapping[str, int]
     mean: FloatArray
     variance: FloatArray
     open: BoolArray
+    free: BoolArray = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "free", self.open | (self.variance > 0.0))
 
     @classmethod
     def of(cls, landmarks: Sequence[Landmark], placed: Sequence[str]) -> Layout:
@@ -45,11 +49,6 @@ class Layout:
     def size(self) -> int:
         """The number of columns."""
         return len(self.mean)
-
-    @property
-    def free(self) -> BoolArray:
-        """Which columns (n,) are not certain."""
-        return self.open | (self.variance > 0.0)
 
     def place(self, seat: Seat) -> tuple[int, int]:
         """Return the columns of x and y of a thing."""

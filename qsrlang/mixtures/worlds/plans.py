@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections import Counter, defaultdict, deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from qsrlang.language.syntax import Atom
 from qsrlang.mixtures.worlds.chains import needed_for
-from qsrlang.mixtures.worlds.enumeration import World
+from qsrlang.mixtures.worlds.enumeration import MAX_WORLDS, World, enumerate_worlds
 from qsrlang.mixtures.worlds.layout import Layout
 from qsrlang.mixtures.worlds.supports import Seat, Support, in_region, stated_regions, support_of
 from qsrlang.relations.graph import AtomicRelation, Constraint, Landmark, RelationGraph, Statement
@@ -69,6 +70,32 @@ class _Pattern:
         )
         used = tuple(constraints[at] for at in self.order)
         return Plan(plan.landmarks, steps, plan.seats, used, plan.layout)
+
+
+class PlannedWorlds(NamedTuple):
+    """Worlds that are possible at all, best first, each with its plan, and the prior mass of those dropped."""
+
+    worlds: tuple[World, ...]
+    plans: tuple[Plan, ...]
+    dropped: float
+
+
+def planned_worlds(
+    graph: RelationGraph,
+    targets: tuple[str, ...],
+    limit: int = MAX_WORLDS,
+    asked: Sequence[Atom] = (),
+    in_parts: bool = False,
+) -> PlannedWorlds:
+    """Return the worlds of targets and how each places them; a graph remembers what was planned."""
+
+    def planned() -> PlannedWorlds:
+        found = enumerate_worlds(graph, *targets, limit=limit, in_parts=in_parts)
+        worlds = tuple(world for world in found if world.weight > 0.0)
+        return PlannedWorlds(worlds, plan_worlds(graph, worlds, *targets, asked=asked), found.dropped)
+
+    spoken = tuple((atom.relation.text, *(one.text for one in atom.arguments)) for atom in asked)
+    return graph.derived((targets, limit, spoken, in_parts), planned, lambda found: len(found.worlds))
 
 
 def plan_world(graph: RelationGraph, world: World, *targets: str, asked: Sequence[Atom] = ()) -> Plan:

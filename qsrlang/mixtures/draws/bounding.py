@@ -1,7 +1,8 @@
-"""What is assumed of directions, as wedges that draws are made inside of, instead of being made and thrown away."""
+"""What is assumed, as bounds that draws are made inside of, instead of being made and thrown away."""
 
 from __future__ import annotations
 
+import math
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -9,14 +10,15 @@ from dataclasses import replace
 import numpy as np
 
 from qsrlang.geometry.pose import Pose2
-from qsrlang.language.syntax import And, Atom
+from qsrlang.language.syntax import And, Atom, Dimension, Uniform
 from qsrlang.mixtures.densities.conditional import frame_of, hand
 from qsrlang.mixtures.densities.sectors import arcs_of
+from qsrlang.mixtures.densities.stance import half_box
+from qsrlang.mixtures.draws.bounds import Bound, Near, Wedge
 from qsrlang.mixtures.draws.conditions import Condition
-from qsrlang.mixtures.draws.wedge import Wedge
 from qsrlang.mixtures.worlds.enumeration import World
 from qsrlang.mixtures.worlds.plans import Plan, Step, asked_step, seats_read
-from qsrlang.mixtures.worlds.supports import in_region
+from qsrlang.mixtures.worlds.supports import Seat, in_region
 from qsrlang.relations.graph import RelationGraph
 
 
@@ -53,47 +55,67 @@ def _is_ready(step: Step, placed: set[str]) -> bool:
     return read <= placed and (step.places or step.referent.block in placed)
 
 
-def wedges_of(
+def bounds_of(
     graph: RelationGraph, world: World, plan: Plan, conditions: Sequence[Condition], viewer: Pose2 | None
-) -> tuple[Mapping[str, tuple[Wedge, ...]], tuple[Condition, ...]]:
-    """Return, for each object that lies anywhere in a region, the wedges it must be in, and the conditions that remain.
+) -> tuple[Mapping[str, tuple[Bound, ...]], tuple[Condition, ...]]:
+    """Return, for each object that lies anywhere in a region, what bounds it, and the conditions that remain.
 
-    A direction between two objects bounds the one that is placed later.
+    A direction between two objects bounds the one that is placed later, and needs no more to be looked at. A distance
+    bounds its referent, if that is placed later, roughly.
     """
-    placing = {step.referent.block: at for at, step in enumerate(plan.steps) if step.places}
-    wedges: dict[str, list[Wedge]] = defaultdict(list)
+    placing = {step.referent.block: step for step in plan.steps if step.places}
+    order = {block: at for at, block in enumerate(placing)}
+    bounds: dict[str, list[Bound]] = defaultdict(list)
     rest: list[Condition] = []
     for one in conditions:
-        found = _wedge(graph, world, plan, one, viewer, placing)
-        if found is None:
-            rest.append(one)
-        else:
-            wedges[found[0]].append(found[1])
-    return {name: tuple(found) for name, found in wedges.items()}, tuple(rest)
+        atom = one.formula if isinstance(one.formula, Atom) and one.share is None else None
+        step = None if atom is None else asked_step(graph, world, plan.seats, atom)
+        wedge = None if atom is None or step is None else _wedge(graph, plan, step, atom, viewer, order)
+        if wedge is not None and _lies_anywhere(placing.get(wedge[0].block)):
+            bounds[wedge[0].block].append(wedge[1])
+            continue
+        rest.append(one)
+        if step is not None and order.get(step.referent.block, -1) > order.get(step.relatum.block, -1):
+            bounds[step.referent.block] += _near(graph, step, placing[step.referent.block])
+    return {name: tuple(found) for name, found in bounds.items() if found}, tuple(rest)
+
+
+def _lies_anywhere(step: Step | None) -> bool:
+    return step is not None and in_region(step.constraint) and step.relatum.root.heading is not None
 
 
 def _wedge(
     graph: RelationGraph,
-    world: World,
     plan: Plan,
-    condition: Condition,
+    step: Step,
+    atom: Atom,
     viewer: Pose2 | None,
-    placing: Mapping[str, int],
-) -> tuple[str, Wedge] | None:
-    if not isinstance(condition.formula, Atom) or condition.share is not None:
-        return None
-    step = asked_step(graph, world, plan.seats, condition.formula)
-    aimed = None if step is None else _aim(graph, plan, step, condition.formula, viewer)
-    if step is None or aimed is None:
+    order: Mapping[str, int],
+) -> tuple[Seat, Wedge] | None:
+    aimed = _aim(graph, plan, step, atom, viewer)
+    if aimed is None:
         return None
     start, width = aimed
-    later, apex = step.referent, step.relatum
-    if placing.get(later.block, -1) < placing.get(apex.block, -1):
-        later, apex, start = apex, later, start + np.pi
-    at = placing.get(later.block)
-    if at is None or not in_region(plan.steps[at].constraint) or later.root.heading is None:
-        return None
-    return later.block, Wedge(apex, step.relatum, start, width)
+    if order.get(step.referent.block, -1) < order.get(step.relatum.block, -1):
+        return step.relatum, Wedge(step.referent, step.relatum, start + np.pi, width)
+    return step.referent, Wedge(step.relatum, step.relatum, start, width)
+
+
+def _near(graph: RelationGraph, step: Step, placing: Step) -> list[Near]:
+    """Return the bound of a distance up to a share of the way to the edge of what its referent lies anywhere on."""
+    (atom,) = step.constraint.atoms
+    distance, support = atom.relation.distance, step.support
+    if not isinstance(distance, Uniform) or support is None or support.seat != placing.relatum:
+        return []
+    if distance.high.dimension is not Dimension.FRACTION or not _lies_anywhere(placing):
+        return []
+    kinds = [
+        graph.classes[graph.class_of(name)] for name in (step.constraint.referent, step.constraint.relatum)
+    ]
+    touching = sum(math.hypot(*half_box(kind.width, kind.depth)) for kind in kinds)
+    share = distance.high.value
+    half = half_box(support.kind.width, support.kind.depth)
+    return [Near(step.relatum, support.seat, half, share, (1.0 - share) * touching)]
 
 
 def _aim(
