@@ -336,11 +336,24 @@ def _grown(
 ) -> Curve:
     times = []
     for size in sizes:
-        known = make(size)
-        took = seconds(lambda known=known, size=size: known.where(f"C{size - 1}"), 3)
-        times.append(took.least)
-        show(f"  {size} {what}", took.text(1e3, "ms"), within(took, limit) if size == sizes[-1] else "")
+        known, target = make(size), f"C{size - 1}"
+        first = Spread.of(_loop(lambda one=one: one.where(target), 1) for one in _forgetful(known))
+        again = seconds(lambda known=known: known.where(target), 3)
+        times.append(first.least)
+        show(
+            f"  {size} {what}, asked first",
+            first.text(1e3, "ms"),
+            within(first, limit) if size == sizes[-1] else "",
+        )
+        show(f"  {size} {what}, asked again", again.text(1e3, "ms"), "")
     return _curve(what, list(sizes), times)
+
+
+def _forgetful(known: qsr.KnowledgeBase, count: int = 5) -> list[qsr.KnowledgeBase]:
+    """Return copies of knowledge that remember nothing of what was asked before."""
+    copies = [replace(known, graph=replace(known.graph)) for _ in range(count + 1)]
+    copies.pop().where(next(reversed(known.classes)))
+    return copies
 
 
 def _curve(what: str, sizes: list[int], times: list[float]) -> Curve:

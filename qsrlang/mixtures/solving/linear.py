@@ -70,21 +70,28 @@ def _turned(turning: Turning, heading: float, variance: float, size: int) -> Lin
     E R(h) = e^{-v/2} R(heading), Cov(R(h) m, h) = v e^{-v/2} R'(heading) m (Stein), and twice the angle gives second
     moments: E R M R^T = tr M / 2 I + e^{-2v} R (M - tr M / 2 I) R^T for a symmetric M.
     """
-    (mx, my), square, _ = turning
-    cos, sin = math.cos(heading), math.sin(heading)
-    turn = np.array([[cos, -sin], [sin, cos]])
+    (mx, my), ((xx, xy), (_, yy)) = turning.mean.tolist(), turning.covariance.tolist()
+    shrink = math.exp(-0.5 * variance)
+    cos, sin = shrink * math.cos(heading), shrink * math.sin(heading)
+    x, y = cos * mx - sin * my, sin * mx + cos * my
+    twice = math.exp(-2.0 * variance)
+    cos2, sin2 = twice * math.cos(2.0 * heading), twice * math.sin(2.0 * heading)
+    trace, spread, skew = (
+        0.5 * (xx + mx * mx + yy + my * my),
+        0.5 * (xx + mx * mx - yy - my * my),
+        xy + mx * my,
+    )
+    spread, skew = cos2 * spread - sin2 * skew, sin2 * spread + cos2 * skew
+    across = skew - x * y + variance * x * y
     slope = np.zeros((2, size))
     slope[0, 0] = slope[1, 1] = 1.0
-    if variance == 0.0:
-        return Linear(slope, turn @ turning.mean, turn @ square @ turn.T)
-    shrink = math.exp(-0.5 * variance)
-    mean = shrink * (turn @ turning.mean)
-    slope[:, 2] = -mean[1], mean[0]
-    whole = square + np.outer((mx, my), (mx, my))
-    half = 0.5 * np.trace(whole) * np.eye(2)
-    spread = half + math.exp(-2.0 * variance) * (turn @ (whole - half) @ turn.T)
-    noise = spread - np.outer(mean, mean) - variance * np.outer(slope[:, 2], slope[:, 2])
-    return Linear(slope, mean - slope[:, 2] * heading, noise)
+    slope[0, 2], slope[1, 2] = (-y, x) if variance > 0.0 else (0.0, 0.0)
+    offset = np.array([x - slope[0, 2] * heading, y - slope[1, 2] * heading])
+    noise = [
+        [trace + spread - x * x - variance * y * y, across],
+        [across, trace - spread - y * y - variance * x * x],
+    ]
+    return Linear(slope, offset, np.array(noise))
 
 
 @lru_cache(maxsize=8192)

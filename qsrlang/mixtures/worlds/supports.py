@@ -19,6 +19,9 @@ class Seat:
     block: str
     root: Landmark
 
+    def __hash__(self) -> int:
+        return hash(self.block)
+
     @property
     def is_landmark(self) -> bool:
         """Whether the object is a landmark itself."""
@@ -41,7 +44,7 @@ class Support:
 
 def in_region(constraint: Constraint) -> bool:
     """Return whether a constraint speaks of a part of its relatum: its top or its inside."""
-    return any(atom.relation.region is not None for atom in constraint.atoms)
+    return constraint.atoms[0].relation.region is not None
 
 
 def stated_regions(constraints: Iterable[Constraint]) -> dict[str, tuple[str, ...]]:
