@@ -337,8 +337,8 @@ def _grown(
     times = []
     for size in sizes:
         known, target = make(size), f"C{size - 1}"
-        first = Spread.of(_loop(lambda one=one: one.where(target), 1) for one in _forgetful(known))
-        again = seconds(lambda known=known: known.where(target), 3)
+        first = Spread.of(_loop(lambda one=one, name=target: one.where(name), 1) for one in _forgetful(known))
+        again = seconds(lambda known=known, name=target: known.where(name), 3)
         times.append(first.least)
         show(
             f"  {size} {what}, asked first",
