@@ -41,13 +41,31 @@ from .mixtures.answers import Component, Where
 from .mixtures.gaussian import GaussianMixture
 from .mixtures.probability import Probability
 from .mixtures.queries import Answer, KnowledgeBase, load, parse_knowledge
-from .planning.belief import voxel_weights
+from .planning.atlas import Atlas, Lattice
+from .planning.belief import Belief, voxel_weights
+from .planning.detecting import Detector
+from .planning.frusta import Extent
+from .planning.goals import Goal
+from .planning.instances import Instances
 from .planning.loop import search_world
+from .planning.noise import Noise, NoisyWorld
 from .planning.outcome import Limits, SearchResult, SearchStep
-from .planning.planners import BeliefPlanner, Planner, QSRPlanner, RandomPlanner
+from .planning.planners.believing import BeliefPlanner
+from .planning.planners.paper import QSRPlanner, RandomPlanner
+from .planning.planners.planner import Planner
+from .planning.problem import ViewProblem
+from .planning.ranking import RankedView, RankedViews, rank_views
+from .planning.repeats import Repeats
 from .planning.seeding import TrialSeeds
 from .planning.sensing import Camera, Robot
 from .planning.sight import Sight
+from .planning.strategies.exact import Exact
+from .planning.strategies.gain import Gain
+from .planning.strategies.index import Index
+from .planning.strategies.nearest import Nearest
+from .planning.strategies.rollout import Rollout
+from .planning.strategies.tour import Tour
+from .planning.views import Views
 from .planning.visibility import in_view, view_values
 from .planning.world import Detection, Drive, Look, World
 from .plotting.answers import draw_answer
@@ -74,6 +92,8 @@ __all__ = [
     "TPCC",
     "Answer",
     "ArmSummary",
+    "Atlas",
+    "Belief",
     "BeliefPlanner",
     "BlockedPoseError",
     "Camera",
@@ -82,25 +102,36 @@ __all__ = [
     "Comparison",
     "Component",
     "Detection",
+    "Detector",
     "Diagnostic",
     "Diagnostics",
     "DistanceField",
     "Drive",
     "Edit",
+    "Exact",
     "Experiment",
+    "Extent",
     "FileError",
+    "Gain",
     "GaussianMixture",
+    "Goal",
     "ImpossibleConditionError",
+    "Index",
+    "Instances",
     "Interval",
     "KnowledgeBase",
     "Landmark",
     "LanguageError",
+    "Lattice",
     "Limits",
     "Look",
     "MissingFacingError",
     "NavigationGrid",
+    "Nearest",
     "NoNavigablePoseError",
     "NoRoomError",
+    "Noise",
+    "NoisyWorld",
     "OccupancyGrid",
     "OctoMap",
     "Opening",
@@ -113,8 +144,12 @@ __all__ = [
     "QSRError",
     "QSRPlanner",
     "RandomPlanner",
+    "RankedView",
+    "RankedViews",
     "RelationGraph",
+    "Repeats",
     "Robot",
+    "Rollout",
     "Room",
     "Scenario",
     "SearchResult",
@@ -124,6 +159,7 @@ __all__ = [
     "Sight",
     "Supports",
     "TooManyWorldsError",
+    "Tour",
     "Trial",
     "TrialSeeds",
     "Triangle",
@@ -132,6 +168,8 @@ __all__ = [
     "UnreachedTargetError",
     "ValueRangeError",
     "ViewCone",
+    "ViewProblem",
+    "Views",
     "VoxelGrid",
     "VoxelMapper",
     "Where",
@@ -169,6 +207,7 @@ __all__ = [
     "print_document",
     "print_query",
     "qualify",
+    "rank_views",
     "read_octomap",
     "read_ros_map",
     "relative_angle",

@@ -5,8 +5,8 @@ from hypothesis import strategies as st
 from simulation_scenes import CAMERA, ROBOT, box, table_room
 
 from qsrlang.geometry.pose import Pose2
+from qsrlang.planning.frusta import axes_of, eyes_of
 from qsrlang.planning.sensing import Camera
-from qsrlang.planning.sight import axes_of, eyes_of
 from qsrlang.simulation.camera import boxes_in_frustum
 from qsrlang.simulation.depth import depth_image
 from qsrlang.simulation.objects import Placement
