@@ -70,6 +70,7 @@ from .planning.visibility import in_view, view_values
 from .planning.world import Detection, Drive, Look, World
 from .plotting.answers import draw_answer
 from .plotting.canvas import save_figure
+from .plotting.curves import draw_curves
 from .plotting.maps import draw_map
 from .plotting.mixtures import draw_mixture
 from .plotting.statistics import draw_found_by_time
@@ -182,6 +183,7 @@ __all__ = [
     "data_root",
     "direction_of",
     "draw_answer",
+    "draw_curves",
     "draw_found_by_time",
     "draw_map",
     "draw_mixture",
