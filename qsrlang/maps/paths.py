@@ -76,10 +76,11 @@ class DistanceField:
         return corners
 
     def _steps(self, points_map: FloatArray) -> FloatArray:
-        # Points on the grid in cells, none rounded over the border of its cell or of the grid.
+        # Points on the grid in cells, none rounded over the border of its cell or of the grid. To a billionth of a cell,
+        # so that among equally short paths the same one is found wherever the grid lies.
         grid = self.navigation.grid
         cells = np.clip(grid.cells_of(points_map), 0, np.array(grid.cells.shape) - 1)[:, ::-1]
-        steps = grid.origin.transform_inverse(points_map) / grid.resolution
+        steps = np.round(grid.origin.transform_inverse(points_map) / grid.resolution, 9)
         return np.clip(steps, cells, np.nextafter(cells + 1.0, cells))
 
     def _reached(self, points_map: FloatArray) -> BoolArray:
