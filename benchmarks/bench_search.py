@@ -14,6 +14,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+from kitchen_searches import CASES, tell_case, tell_knowledge, tell_noise
 from numba import njit
 from random_rooms import excesses
 
@@ -167,6 +168,24 @@ def bench_pomdp(options: argparse.Namespace) -> None:
     subprocess.run(command, check=True, env={**os.environ, "SDL_VIDEODRIVER": "dummy"})
 
 
+def bench_kitchen(options: argparse.Namespace) -> None:
+    print("the paper's kitchen, its robot 0.5 m/s, 1 rad/s, 3 s a look")
+    if scenario_of("tum-kitchen") is None:
+        return
+    for variant, camera in CASES:
+        result = tell_case(variant, camera, options.trials)
+        if options.figures:
+            times = {arm: [t.seconds if t.found else np.inf for t in result.of(arm)] for arm in result.arms}
+            figure = qsr.draw_found_by_time(times, 120.0)
+            qsr.save_figure(figure, IMAGES / f"search-found-{variant}-{camera}.png")
+    knowledge, noise = tell_knowledge(options.trials // 4), tell_noise(options.trials // 4)
+    if options.figures:
+        save_lines(
+            knowledge, "displacement of the known landmarks [m]", "censored mean time [s]", "search-knowledge"
+        )
+        save_lines(noise, "detection rate of the camera", "censored mean time [s]", "search-noise")
+
+
 def save_lines(curves, x: str, y: str, name: str, **options) -> None:
     IMAGES.mkdir(exist_ok=True)
     qsr.save_figure(qsr.draw_curves(curves, x, y, **options), IMAGES / f"{name}.png")
@@ -185,6 +204,8 @@ def main() -> None:
         bench_rooms(options.figures)
     if "pomdp" in options.only:
         bench_pomdp(options)
+    if "kitchen" in options.only:
+        bench_kitchen(options)
 
 
 if __name__ == "__main__":

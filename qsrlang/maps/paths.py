@@ -76,8 +76,8 @@ class DistanceField:
         return corners
 
     def _steps(self, points_map: FloatArray) -> FloatArray:
-        # Points on the grid in cells, none rounded over the border of its cell or of the grid. To a billionth of a cell,
-        # so that among equally short paths the same one is found wherever the grid lies.
+        # Points on the grid in cells, none rounded over the border of its cell or of the grid. To a billionth of a
+        # cell, so that among equally short paths the same one is found wherever the grid lies.
         grid = self.navigation.grid
         cells = np.clip(grid.cells_of(points_map), 0, np.array(grid.cells.shape) - 1)[:, ::-1]
         steps = np.round(grid.origin.transform_inverse(points_map) / grid.resolution, 9)
