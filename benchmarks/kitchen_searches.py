@@ -48,13 +48,11 @@ def tell_case(variant: str, camera: str, trials: int) -> qsr.Comparison:
         f"  {variant}, camera {camera}, {trials} paired trials; hindsight {hindsight(scenario, variant):.1f} s"
     )
     for arm, one in result.summaries.items():
-        mean, gap = difference(result, arm)
-        print(
-            f"    {arm:14s} found {one.found:6.1%} [{one.found_ci.low:.1%}, {one.found_ci.high:.1%}]  censored "
-            f"mean {one.time_censored:6.1f} s [{one.time_ci.low:.1f}, {one.time_ci.high:.1f}]  {one.time_censored / base:5.2f} of eq. 3"
-            f"; less it {mean:+.1f} [{gap[0]:+.1f}, {gap[1]:+.1f}] s  looks {one.poses or math.nan:.1f}",
-            flush=True,
-        )
+        mean, (low, high) = difference(result, arm)
+        found = f"found {one.found:6.1%} [{one.found_ci.low:.1%}, {one.found_ci.high:.1%}]"
+        time = f"censored mean {one.time_censored:6.1f} s [{one.time_ci.low:.1f}, {one.time_ci.high:.1f}]"
+        beside = f"{one.time_censored / base:5.2f} of eq. 3; less it {mean:+.1f} [{low:+.1f}, {high:+.1f}] s"
+        print(f"    {arm:14s} {found}  {time}  {beside}  looks {one.poses or math.nan:.1f}", flush=True)
     return result
 
 
