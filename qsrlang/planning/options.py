@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -16,10 +17,8 @@ from qsrlang.planning.problem import ViewProblem
 from qsrlang.planning.sensing import Robot
 from qsrlang.planning.views import Views, beside
 
-SHORTLIST = 80
-"""How many views of an atlas a planner thinks through."""
-COVERING = 30
-"""How many of those are picked because together they show most."""
+COVERING = 0.375
+"""The share of the views thought through that is picked because together they show most."""
 _APART = 1.0
 """The second heading that a place offers is at least this far from its best [rad]."""
 
@@ -53,15 +52,20 @@ class Options:
         )
 
 
-def drawn_options(goals: Sequence[Goal], robot: Robot, situation: Situation, is_farsighted: bool) -> Options:
-    """Return the candidates that were drawn at random, those without a way left out."""
+def drawn_options(
+    goals: Sequence[Goal], robot: Robot, situation: Situation, is_farsighted: bool, most: int
+) -> Options:
+    """Return the candidates that were drawn at random, without those to which there is no way."""
     poses = situation.drawn
     views = beside([goal.views_from(poses) for goal in goals])
     here = Ways.from_field(situation.field, poses[:, :2])
     every = np.arange(len(poses))
     costs = first_costs(robot, situation.pose, here, every, poses[:, 2])
     ways = Ways.among(situation.field.navigation, poses[:, :2]) if is_farsighted else None
-    return _reached(Options(views, every, *costs, ways))
+    options = _reached(Options(views, every, *costs, ways))
+    if len(options.views) <= most:
+        return options
+    return options.take(np.sort(shortlist(options, scaled_mass(goals), most)))
 
 
 def atlas_options(
@@ -69,7 +73,7 @@ def atlas_options(
     robot: Robot,
     situation: Situation,
     rng: np.random.Generator,
-    most: int = SHORTLIST,
+    most: int,
 ) -> Options:
     """Return the most promising views of the goals' atlas: by chance over cost, and by what they show together.
 
@@ -92,7 +96,7 @@ def shortlist(options: Options, mass: FloatArray, most: int) -> IntArray:
     """Return at most `most` of the options: the greedy cover of the mass (K,) first, then by chance over cost."""
     index = options.views.values(mass) / options.seconds
     ranked = np.argsort(-index, kind="stable")
-    cover = greedy_cover(options.views, mass, min(COVERING, most))
+    cover = greedy_cover(options.views, mass, math.ceil(COVERING * most))
     rest = ranked[~np.isin(ranked, cover)][: most - len(cover)]
     return np.concatenate([cover, rest])
 

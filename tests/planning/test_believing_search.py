@@ -30,6 +30,7 @@ from qsrlang.planning.ranking import rank_views
 from qsrlang.planning.seeding import TrialSeeds
 from qsrlang.planning.sensing import Camera, Robot
 from qsrlang.planning.sight import Sight
+from qsrlang.planning.strategies.exact import Exact
 from qsrlang.planning.strategies.gain import Gain
 from qsrlang.planning.strategies.index import Index
 from qsrlang.planning.strategies.rollout import Rollout
@@ -151,7 +152,7 @@ def test_an_atlas_shows_what_looks_from_its_poses_show():
     np.testing.assert_array_equal(ATLAS.views.take(rows).table() > 0.0, seen)
 
 
-@pytest.mark.parametrize("strategy", [Rollout(), Index(), Gain()])
+@pytest.mark.parametrize("strategy", [Rollout(), Index(), Gain(), Exact()])
 def test_the_cup_is_found(strategy):
     result = run(Flat(), strategy=strategy)
     assert result.found and result.detection == CUP and result.ending == "found"
@@ -292,7 +293,7 @@ def ranking(where=None, **options):
     )
 
 
-@pytest.mark.parametrize("planner", ["rollout", "index", "belief", "nearest", "tour"])
+@pytest.mark.parametrize("planner", ["rollout", "index", "belief", "nearest", "tour", "exact"])
 def test_views_are_ranked_with_their_terms(planner):
     ranked = ranking(planner=planner, count=4)
     values = [view.value for view in ranked.views]
@@ -302,7 +303,7 @@ def test_views_are_ranked_with_their_terms(planner):
             view.travel / ROBOT.speed + view.turn / ROBOT.turn_rate + ROBOT.dwell
         )
         assert view.index == pytest.approx(view.gain / view.seconds)
-        assert (view.expected is None) == (planner not in ("rollout", "tour"))
+        assert (view.expected is None) == (planner not in ("rollout", "tour", "exact"))
         assert view.equation_3 > 0.0
     told = ranked.to_json()
     assert len(told["views"]) == 4 and told["views"][0]["pose"]["x"] == ranked.views[0].pose.x

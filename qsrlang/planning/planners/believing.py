@@ -47,10 +47,12 @@ class BeliefPlanner:
     def options(self, situation: Situation, rng: np.random.Generator) -> Options:
         """Return the views to choose from; where the atlas shows nothing more, the candidates that were drawn."""
         if self.goals[0].atlas is not None:
-            options = atlas_options(self.goals, self.robot, situation, rng)
+            options = atlas_options(self.goals, self.robot, situation, rng, self.strategy.most)
             if len(options.views):
                 return options
-        return drawn_options(self.goals, self.robot, situation, self.strategy.is_farsighted)
+        return drawn_options(
+            self.goals, self.robot, situation, self.strategy.is_farsighted, self.strategy.most
+        )
 
     def after_look(
         self, pose: Pose2, detections: Sequence[Detection], tilt: float | None = None

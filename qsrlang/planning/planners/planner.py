@@ -14,7 +14,7 @@ from qsrlang.geometry.pose import Pose2
 from qsrlang.maps.paths import DistanceField
 from qsrlang.planning.world import Detection
 
-PlannerName = Literal["random", "planes", "qsr", "belief", "nearest", "index", "rollout", "tour"]
+PlannerName = Literal["random", "planes", "qsr", "belief", "nearest", "index", "rollout", "tour", "exact"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -23,6 +23,7 @@ class Exact:
     """
 
     is_farsighted: bool = True
+    most: int = MAX_VIEWS
 
     def rank(self, problem: ViewProblem, rng: np.random.Generator) -> Ranking:
         """Return minus the least cost [s] of each first view."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from qsrlang.planning.problem import ViewProblem
-from qsrlang.planning.strategies.strategy import Ranking
+from qsrlang.planning.strategies.strategy import SHORTLIST, Ranking
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,6 +18,7 @@ class Index:
     """
 
     is_farsighted: bool = False
+    most: int = SHORTLIST
 
     def rank(self, problem: ViewProblem, rng: np.random.Generator) -> Ranking:
         """Return p(v) / c(v) of each view [1/s]."""

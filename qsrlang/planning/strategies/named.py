@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from qsrlang.errors import UnknownNameError
+from qsrlang.planning.strategies.exact import Exact
 from qsrlang.planning.strategies.gain import Gain
 from qsrlang.planning.strategies.index import Index
 from qsrlang.planning.strategies.nearest import Nearest
@@ -14,7 +15,14 @@ from qsrlang.planning.strategies.strategy import Strategy
 from qsrlang.planning.strategies.tour import Tour
 
 STRATEGIES: Mapping[str, Strategy] = MappingProxyType(
-    {"belief": Gain(), "nearest": Nearest(), "index": Index(), "rollout": Rollout(), "tour": Tour()}
+    {
+        "belief": Gain(),
+        "nearest": Nearest(),
+        "index": Index(),
+        "rollout": Rollout(),
+        "tour": Tour(),
+        "exact": Exact(),
+    }
 )
 
 

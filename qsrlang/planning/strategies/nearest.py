@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from qsrlang.planning.problem import ViewProblem
-from qsrlang.planning.strategies.strategy import Ranking
+from qsrlang.planning.strategies.strategy import SHORTLIST, Ranking
 
 
 @dataclass(frozen=True, slots=True)
@@ -15,6 +15,7 @@ class Nearest:
     """Ranks views that show anything by 1 / c(v)."""
 
     is_farsighted: bool = False
+    most: int = SHORTLIST
 
     def rank(self, problem: ViewProblem, rng: np.random.Generator) -> Ranking:
         """Return 1 / c(v) of each view that shows anything, else 0."""

@@ -9,7 +9,7 @@ import numpy as np
 from qsrlang.arrays import FloatArray
 from qsrlang.planning.problem import ViewProblem
 from qsrlang.planning.strategies.simulating import follow_index
-from qsrlang.planning.strategies.strategy import Ranking
+from qsrlang.planning.strategies.strategy import SHORTLIST, Ranking
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,6 +23,7 @@ class Rollout:
     depth: int = 10
     powers: tuple[float, ...] = (0.5, 1.0, 1.5)
     is_farsighted: bool = True
+    most: int = SHORTLIST
 
     def rank(self, problem: ViewProblem, rng: np.random.Generator) -> Ranking:
         """Return the seconds that each first view saves against never finding the target."""

@@ -31,12 +31,20 @@ class Ranking:
         return cls(values, unit, np.full(len(values), np.nan))
 
 
+SHORTLIST = 80
+"""How many views most strategies think through."""
+
+
 class Strategy(Protocol):
     """A way to rank views."""
 
     @property
     def is_farsighted(self) -> bool:
         """Whether it needs the costs between views."""
+
+    @property
+    def most(self) -> int:
+        """Of how many views it makes its choice at most."""
 
     def rank(self, problem: ViewProblem, rng: np.random.Generator) -> Ranking:
         """Return what each view is worth as the next one."""

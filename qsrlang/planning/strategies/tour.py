@@ -11,7 +11,7 @@ from qsrlang.arrays import IntArray
 from qsrlang.errors import ValueRangeError
 from qsrlang.planning.problem import ViewProblem
 from qsrlang.planning.strategies.rollout import saved
-from qsrlang.planning.strategies.strategy import Ranking
+from qsrlang.planning.strategies.strategy import SHORTLIST, Ranking
 
 MAX_TOURS = 1_000_000
 
@@ -27,6 +27,7 @@ class Tour:
     tours: int = 1_000
     looks: int = 10
     is_farsighted: bool = True
+    most: int = SHORTLIST
 
     def __post_init__(self) -> None:
         for what, value in (("tours", self.tours), ("looks of a tour", self.looks)):
