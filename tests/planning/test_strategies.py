@@ -17,7 +17,7 @@ from qsrlang.planning.strategies.gain import Gain
 from qsrlang.planning.strategies.index import Index
 from qsrlang.planning.strategies.nearest import Nearest
 from qsrlang.planning.strategies.rollout import Rollout
-from qsrlang.planning.strategies.simulating import follow_index
+from qsrlang.planning.strategies.simulating import follow_index, follow_orders
 from qsrlang.planning.strategies.tour import Tour, sample_tours
 from qsrlang.planning.views import Views, beside
 
@@ -156,6 +156,16 @@ def test_the_time_limit_ends_a_plan():
     problem = random_problem(rng_of(3), seconds=10.0)
     assert problem.cost_of([0, 1, 2, 3]) <= 10.0 + 1e-9
     assert (follow_index(problem, 10) <= 10.0 + 1e-9).all()
+
+
+@given(seeds, st.sampled_from([math.inf, 20.0]), st.sampled_from([ONE, Instances(3), Instances.about(1.5)]))
+def test_orders_cost_what_the_problem_says(seed, seconds, number):
+    rng = rng_of(seed)
+    problem = random_problem(rng, goals=2, seconds=seconds, instances=(number, ONE))
+    orders = np.array([rng.permutation(6)[:4] for _ in range(5)])
+    orders[0, 2:] = -1
+    slow = [problem.cost_of(order[order >= 0]) for order in orders]
+    np.testing.assert_allclose(follow_orders(problem, orders), slow, rtol=1e-6)
 
 
 def test_tours_visit_no_view_twice_and_prefer_what_is_near_and_worth_it():

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numba import njit
 
-from qsrlang.arrays import FloatArray
+from qsrlang.arrays import FloatArray, IntArray
 from qsrlang.planning.problem import ViewProblem
 from qsrlang.planning.threads import over_rows
 
@@ -22,6 +23,31 @@ def follow_index(problem: ViewProblem, depth: int, power: float = 1.0) -> FloatA
     a time limit the search goes on until the `depth` is reached or no view is left, the nearest first where none shows
     anything.
     """
+    tables, believed = _tables(problem)
+    costs = np.empty(len(problem))
+    limits = (problem.seconds, depth, power)
+    over_rows(
+        lambda first, last: _follow(tables, believed, limits, costs, first, last),
+        len(problem),
+        depth * len(problem) * len(problem.views.shown),
+    )
+    return costs
+
+
+def follow_orders(problem: ViewProblem, orders: IntArray) -> FloatArray:
+    """Return `ViewProblem.cost_of` each row of views (T, L), which a -1 ends: (T,) [s]."""
+    tables, believed = _tables(problem)
+    costs = np.empty(len(orders))
+    over_rows(
+        lambda first, last: _follow_orders(orders, tables, believed, problem.seconds, costs, first, last),
+        len(orders),
+        orders.size * (1 + len(problem.views.shown) // max(len(problem), 1)),
+    )
+    return costs
+
+
+def _tables(problem: ViewProblem) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+    """Return what kernels read: the views by rows and by places, the costs; and what is believed at first."""
     views = problem.views
     order = np.argsort(views.shown, kind="stable")
     showing = np.repeat(np.arange(len(views)), np.diff(views.starts))[order].astype(np.int32)
@@ -37,14 +63,7 @@ def follow_index(problem: ViewProblem, depth: int, power: float = 1.0) -> FloatA
         np.array([one.count for one in problem.instances]),
         np.array([one.poisson for one in problem.instances]),
     )
-    costs = np.empty(len(views))
-    limits = (problem.seconds, depth, power)
-    over_rows(
-        lambda first, last: _follow(tables, believed, limits, costs, first, last),
-        len(views),
-        depth * len(views) * len(views.shown),
-    )
-    return costs
+    return tables, believed
 
 
 @njit(cache=True)
@@ -139,3 +158,34 @@ def _cost_from(start, tables, believed, limits):  # type: ignore[no-untyped-def]
 def _follow(tables, believed, limits, costs, first, last):  # type: ignore[no-untyped-def]
     for start in range(first, last):
         costs[start] = _cost_from(start, tables, believed, limits)
+
+
+@njit(cache=True)
+def _cost_of_order(order, tables, believed, seconds):  # type: ignore[no-untyped-def]
+    starts, shown, rates, _, _, _, goal_of, first, between = tables
+    mass, unseen, counts, poisson = believed[0].copy(), believed[2].copy(), believed[3], believed[4]
+    scale = np.empty(len(unseen))
+    for goal in range(len(unseen)):
+        scale[goal] = _phi(unseen[goal], counts[goal], poisson[goal])
+    clock, cost, last = 0.0, 0.0, -1
+    for view in order:
+        if view < 0 or clock >= seconds:
+            break
+        left = _left(unseen, counts, poisson, scale)
+        step = min(first[view] if last < 0 else between[last, view], seconds - clock)
+        cost += step * left
+        clock += step
+        last = view
+        for entry in range(starts[view], starts[view + 1]):
+            seen = mass[shown[entry]] * rates[entry]
+            mass[shown[entry]] -= seen
+            unseen[goal_of[shown[entry]]] -= seen
+    return (
+        cost + (seconds - clock) * _left(unseen, counts, poisson, scale) if math.isfinite(seconds) else cost
+    )
+
+
+@njit(cache=True, nogil=True)
+def _follow_orders(orders, tables, believed, seconds, costs, first, last):  # type: ignore[no-untyped-def]
+    for tour in range(first, last):
+        costs[tour] = _cost_of_order(orders[tour], tables, believed, seconds)
