@@ -152,8 +152,8 @@ def bench_rooms(figures: bool) -> None:
             f"worst {excess.max():6.1%}  exact in {np.mean(excess < 1e-6):4.0%}"
         )
     if figures:
-        shares = np.arange(1, 101) / 100.0
-        curves = {name: (np.sort(100.0 * excess), shares) for name, excess in found.items()}
+        shares = np.append(np.arange(1, 101) / 100.0, 1.0)
+        curves = {name: (np.append(np.sort(100.0 * excess), 500.0), shares) for name, excess in found.items()}
         save_lines(curves, "cost above the best order [%]", "share of rooms", "search-regret", limit=120.0)
 
 

@@ -85,7 +85,8 @@ def weights_of(preset: PlannerEntry, belief: Where, places: FloatArray) -> Float
 class Reminder:
     """Asks what is known once more when things have been seen: they are landmarks from then on.
 
-    A thing without a front of its own is taken to face as the nearest landmark does.
+    A thing without a front of its own is taken to face as the nearest landmark does. As long as s of the n places
+    where such a thing may be are accounted for, the answer counts for s / n, and the one without it for the rest.
     """
 
     knowledge: str
@@ -97,17 +98,20 @@ class Reminder:
     def weights(self, seen: Sequence[Detection]) -> FloatArray | None:
         """Return the weights (K,) of the places by what is known now, None where the target does not depend on it."""
         known = load(self.knowledge).with_landmarks(*self.landmarks)
-        fresh = [one for one in seen if one.kind in known.graph.classes]
+        placed = {landmark.name for landmark in known.landmarks}
+        fresh = [one for one in seen if one.kind in known.graph.classes and one.name not in placed]
         if not fresh:
             return None
         landmarks = [
             Landmark(one.name, one.kind, *one.position[:2], heading=heading_near(known, one)) for one in fresh
         ]
         try:
-            answer = known.with_landmarks(*landmarks).where(self.target)
+            before, after = known.where(self.target), known.with_landmarks(*landmarks).where(self.target)
+            share = min(_accounted(known, kind, fresh) for kind in {one.kind for one in fresh})
         except QSRError:
             return None
-        return weights_of(self.preset, answer, self.places)
+        told, old = (weights_of(self.preset, answer, self.places) for answer in (after, before))
+        return np.asarray(share * told + (1.0 - share) * old)
 
 
 def heading_near(known: KnowledgeBase, seen: Detection) -> float | None:
@@ -116,3 +120,9 @@ def heading_near(known: KnowledgeBase, seen: Detection) -> float | None:
     x, y, _ = seen.position
     nearest = min(facing, key=lambda one: np.hypot(one.x - x, one.y - y), default=None)
     return None if nearest is None else nearest.heading
+
+
+def _accounted(known: KnowledgeBase, kind: str, seen: Sequence[Detection]) -> float:
+    """Return the share of the places of a class, one for each component of where it is, that the things seen fill."""
+    count = sum(one.kind == kind for one in seen)
+    return count / max(count, len(known.where(kind).components))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from qsrlang.experiments.comparing import compare
-from qsrlang.experiments.goals import Reminder, extent_of
+from qsrlang.experiments.goals import Reminder, extent_of, weights_of
 from qsrlang.experiments.presets import find_preset, read_planner
 from qsrlang.experiments.scenarios import load_scenario
 from qsrlang.experiments.stories import open_search
@@ -29,10 +29,19 @@ def looking_ahead(cell):
 
 def test_a_keyboard_on_the_way_moves_the_cups_to_its_right_at_once():
     reminder = Reminder("kitchen/cups", (), "Cup", PRESET, PLACES)
-    weights = reminder.weights([KEYBOARD])
-    right = np.hypot(*(PLACES - [5.06, 11.31]).T) < 0.3
-    before = load("kitchen/cups").where("Cup").mixture.pdf(PLACES)
-    assert weights[right].sum() / weights.sum() > 2 * before[right].sum() / before.sum()
+    before = weights_of(PRESET, load("kitchen/cups").where("Cup"), PLACES)
+    after = reminder.weights([KEYBOARD])
+    right, elsewhere = (np.hypot(*(PLACES - place).T) < 0.3 for place in ([5.06, 11.31], [2.05, 11.4]))
+    assert after[right].sum() > 1.3 * before[right].sum()
+    assert 0.5 * before[elsewhere].sum() < after[elsewhere].sum() < before[elsewhere].sum(), (
+        "two desks are left"
+    )
+    assert after.sum() == pytest.approx(before.sum())
+
+
+def test_what_was_known_before_or_is_no_relatum_changes_nothing():
+    reminder = Reminder("kitchen/cups", (), "Cup", PRESET, PLACES)
+    assert reminder.weights([Detection("monitor-1", "Monitor", (1.6, 11.73, 0.95))]) is None
     assert reminder.weights([Detection("duck-1", "Duck", (1.0, 1.0, 1.0))]) is None
 
 
