@@ -29,6 +29,7 @@ from scipy.sparse.csgraph import shortest_path
 from qsrlang.planning.instances import ONE
 from qsrlang.planning.problem import ViewProblem
 from qsrlang.planning.strategies.rollout import Rollout
+from qsrlang.planning.threads import use_threads
 from qsrlang.planning.views import Views, beside
 
 SIDE, OBJECTS, RADIUS, RATE, MOST_STEPS = 10, 1, 4, 0.95, 200
@@ -254,6 +255,7 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument("--simulations", type=int, nargs="+", default=SIMULATIONS)
     options = parser.parse_args()
+    use_threads(1)
     for prior in ("uniform", "landmark"):
         with contextlib.redirect_stdout(io.StringIO()):
             play_ours(world(0, prior))

@@ -116,7 +116,7 @@ def slow_follow(problem, start, power, depth):
 def test_the_kernel_simulates_what_the_problem_says(seed, power, number):
     problem = random_problem(rng_of(seed), views=7, seconds=60.0, instances=(number,))
     slow = [slow_follow(problem, view, power, 20) for view in range(7)]
-    np.testing.assert_allclose(follow_index(problem, 20, power), slow, rtol=2e-3)
+    np.testing.assert_allclose(follow_index(problem, 20, (power,)), slow, rtol=2e-3)
 
 
 def test_rollout_is_near_the_optimum_and_the_index_is_not():

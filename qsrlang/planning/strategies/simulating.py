@@ -16,20 +16,20 @@ _ENOUGH = 1e-5
 """A simulated search ends when no view has this chance to find what is left."""
 
 
-def follow_index(problem: ViewProblem, depth: int, power: float = 1.0) -> FloatArray:
+def follow_index(problem: ViewProblem, depth: int, powers: tuple[float, ...] = (1.0,)) -> FloatArray:
     """Return for each first view the cost [s] of `ViewProblem.cost_of` if an index chooses all later ones: (N,).
 
-    The index is p^power / c, of the belief as it is by then. Infinite where there is no way to the first view. Without
-    a time limit the search goes on until the `depth` is reached or no view is left, the nearest first where none shows
-    anything.
+    The index is p^a / c, of the belief as it is by then, with the best of the `powers` a. Infinite where there is no
+    way to the first view. Without a time limit the search goes on until the `depth` is reached or no view is left, the
+    nearest first where none shows anything.
     """
     tables, believed = _tables(problem)
     costs = np.empty(len(problem))
-    limits = (problem.seconds, depth, power)
+    limits = (problem.seconds, depth, np.array(powers))
     over_rows(
         lambda first, last: _follow(tables, believed, limits, costs, first, last),
         len(problem),
-        depth * len(problem) * len(problem.views.shown),
+        len(powers) * depth * len(problem) * len(problem.views.shown),
     )
     return costs
 
@@ -157,7 +157,10 @@ def _cost_from(start, tables, believed, limits):  # type: ignore[no-untyped-def]
 @njit(cache=True, nogil=True)
 def _follow(tables, believed, limits, costs, first, last):  # type: ignore[no-untyped-def]
     for start in range(first, last):
-        costs[start] = _cost_from(start, tables, believed, limits)
+        costs[start] = math.inf
+        for power in limits[2]:
+            cost = _cost_from(start, tables, believed, (limits[0], limits[1], power))
+            costs[start] = min(costs[start], cost)
 
 
 @njit(cache=True)
