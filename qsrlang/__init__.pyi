@@ -43,17 +43,36 @@ from .mixtures.information import LandmarkRanking, LandmarkValue
 from .mixtures.probability import Probability
 from .mixtures.queries import Answer, KnowledgeBase, load, parse_knowledge
 from .mixtures.scenes import SceneSamples
-from .planning.belief import voxel_weights
+from .planning.atlas import Atlas, Lattice
+from .planning.belief import Belief, voxel_weights
+from .planning.detecting import Detector
+from .planning.frusta import Extent
+from .planning.goals import Goal
+from .planning.instances import Instances
 from .planning.loop import search_world
+from .planning.noise import Noise, NoisyWorld
 from .planning.outcome import Limits, SearchResult, SearchStep
-from .planning.planners import BeliefPlanner, Planner, QSRPlanner, RandomPlanner
+from .planning.planners.believing import BeliefPlanner
+from .planning.planners.paper import QSRPlanner, RandomPlanner
+from .planning.planners.planner import Planner
+from .planning.problem import ViewProblem
+from .planning.ranking import RankedView, RankedViews, rank_views
+from .planning.repeats import Repeats
 from .planning.seeding import TrialSeeds
 from .planning.sensing import Camera, Robot
 from .planning.sight import Sight
+from .planning.strategies.exact import Exact
+from .planning.strategies.gain import Gain
+from .planning.strategies.index import Index
+from .planning.strategies.nearest import Nearest
+from .planning.strategies.rollout import Rollout
+from .planning.strategies.tour import Tour
+from .planning.views import Views
 from .planning.visibility import in_view, view_values
 from .planning.world import Detection, Drive, Look, World
 from .plotting.answers import draw_answer
 from .plotting.canvas import save_figure
+from .plotting.curves import draw_curves
 from .plotting.maps import draw_map
 from .plotting.mixtures import draw_mixture
 from .plotting.statistics import draw_found_by_time
@@ -79,6 +98,8 @@ __all__ = [
     "TPCC",
     "Answer",
     "ArmSummary",
+    "Atlas",
+    "Belief",
     "BeliefPlanner",
     "BlockedPoseError",
     "Camera",
@@ -89,29 +110,40 @@ __all__ = [
     "Conflict",
     "Consistency",
     "Detection",
+    "Detector",
     "Diagnostic",
     "Diagnostics",
     "DistanceField",
     "Drive",
     "Edit",
+    "Exact",
     "Experiment",
     "Explanation",
+    "Extent",
     "FileError",
+    "Gain",
     "GaussianMixture",
+    "Goal",
     "Impossible",
     "ImpossibleConditionError",
+    "Index",
+    "Instances",
     "Interval",
     "KnowledgeBase",
     "Landmark",
     "LandmarkRanking",
     "LandmarkValue",
     "LanguageError",
+    "Lattice",
     "Limits",
     "Look",
     "MissingFacingError",
     "NavigationGrid",
+    "Nearest",
     "NoNavigablePoseError",
     "NoRoomError",
+    "Noise",
+    "NoisyWorld",
     "OccupancyGrid",
     "OctoMap",
     "Opening",
@@ -125,10 +157,14 @@ __all__ = [
     "QSRError",
     "QSRPlanner",
     "RandomPlanner",
+    "RankedView",
+    "RankedViews",
     "Reason",
     "RelationGraph",
     "Relaxation",
+    "Repeats",
     "Robot",
+    "Rollout",
     "Room",
     "Scenario",
     "SceneSamples",
@@ -139,6 +175,7 @@ __all__ = [
     "Sight",
     "Spot",
     "Supports",
+    "Tour",
     "Trial",
     "TrialSeeds",
     "Triangle",
@@ -147,6 +184,8 @@ __all__ = [
     "UnreachedTargetError",
     "ValueRangeError",
     "ViewCone",
+    "ViewProblem",
+    "Views",
     "VoxelGrid",
     "VoxelMapper",
     "Where",
@@ -159,6 +198,7 @@ __all__ = [
     "data_root",
     "direction_of",
     "draw_answer",
+    "draw_curves",
     "draw_found_by_time",
     "draw_map",
     "draw_mixture",
@@ -186,6 +226,7 @@ __all__ = [
     "print_document",
     "print_query",
     "qualify",
+    "rank_views",
     "read_octomap",
     "read_ros_map",
     "relations_between",

@@ -20,6 +20,7 @@ from qsrlang.experiments.recording import Experiment, read_trials
 from qsrlang.experiments.scenarios import load_scenario
 from qsrlang.experiments.summaries import Comparison
 from qsrlang.experiments.tables import comparison_json, comparison_table
+from qsrlang.planning.noise import Noise
 
 INTERRUPTED = 130
 RUNS = Path("runs")
@@ -50,15 +51,21 @@ def compare(
     camera: CameraName = None,
     knowledge: KnowledgeName = None,
     robot: RobotName = None,
+    detection_rate: Annotated[
+        float, typer.Option(help="The share of things in view that the camera shows.")
+    ] = 1.0,
+    false_alarms: Annotated[
+        float, typer.Option(help="The share of looks that report the target where it is not.")
+    ] = 0.0,
     form: Annotated[
         TableFormat, typer.Option("--format", help="How the result is printed.")
     ] = TableFormat.TABLE,
 ) -> None:
     """Compare search methods over many trials that share their random numbers."""
-    loaded = load_scenario(scenario, camera, robot, knowledge)
+    loaded = load_scenario(scenario, camera, robot, knowledge, Noise(detection_rate, false_alarms))
     names = None if arms is None else [name.strip() for name in arms.split(",") if name.strip()]
     made = comparing.experiment_of(loaded, seed, variant)
-    path = output or _default_output(made)
+    path = output or _default_output(made, loaded.noise)
     told = Console(stderr=True)
     with _progress(told) as progress, _kept_when_interrupted(told, path, made):
         cores = processes or os.cpu_count() or 1
@@ -67,8 +74,9 @@ def compare(
     _print(result, form)
 
 
-def _default_output(made: Experiment) -> Path:
-    return RUNS / f"{made.scenario}-{made.variant}-{made.camera}-{made.robot}-seed-{made.seed}.csv"
+def _default_output(made: Experiment, noise: Noise) -> Path:
+    erring = "" if noise.is_none else f"-{noise.detection_rate:g}-{noise.false_alarms:g}"
+    return RUNS / f"{made.scenario}-{made.variant}-{made.camera}-{made.robot}{erring}-seed-{made.seed}.csv"
 
 
 @contextmanager

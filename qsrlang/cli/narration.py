@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from qsrlang.cli.answers import print_answer
 from qsrlang.experiments.stories import Opening, SearchStory
 from qsrlang.geometry.pose import Pose2
 from qsrlang.planning.outcome import SearchStep
+from qsrlang.planning.ranking import RankedView, ranked
 from qsrlang.planning.world import Detection
 
 
@@ -41,12 +43,15 @@ def narrate_opening(console: Console, opening: Opening, seed: int) -> None:
         print_answer(briefing.belief, console, title)
 
 
-def narrate_step(console: Console, opening: Opening, step: SearchStep, picture: Path | None) -> None:
-    """Print one step: where it looks, why, what it saw, and the clock."""
+def narrate_step(
+    console: Console, opening: Opening, step: SearchStep, picture: Path | None, explain: bool = False
+) -> None:
+    """Print one step: where it looks, why, what it saw, and the clock; `explain` adds what the best views cost."""
     console.print(f"\n[bold]Step {step.number + 1}[/bold]", highlight=False)
     lines = [
         f"looks from {_pose(step.pose)}: {step.travel:.1f} m to drive, {math.degrees(step.turn):.0f} deg to turn",
         f"because {_reason(opening, step)}",
+        *(_weighed(step) if explain else ()),
         _seen(step, opening.briefing.target),
         f"clock {step.clock:.1f} s",
     ]
@@ -56,12 +61,18 @@ def narrate_step(console: Console, opening: Opening, step: SearchStep, picture: 
         console.print(f"  {line}", highlight=False, soft_wrap=True, markup=False)
 
 
+def value_text(value: float) -> str:
+    """Return a value with as many digits as tell small ones apart."""
+    return f"{value:.1f}" if abs(value) >= 1.0 else f"{value:.3g}"
+
+
 def _pose(pose: Pose2) -> str:
     return f"({pose.x:.2f} m, {pose.y:.2f} m) facing {math.degrees(pose.yaw):.0f} deg"
 
 
 def _reason(opening: Opening, step: SearchStep) -> str:
     count, value = len(step.candidates), step.value
+    unit = f" {step.unit}" if step.unit else ""
     if opening.scenario.arm(opening.briefing.arm).planner == "random":
         return f"it picked one of {count} poses at random"
     runner_up = max(
@@ -69,7 +80,25 @@ def _reason(opening: Opening, step: SearchStep) -> str:
     )
     rank = step.ranking.index(step.chosen) + 1
     return (
-        f"its view is worth {value:.1f}, rank {rank} of {count} poses; the runner-up is worth {runner_up:.1f}"
+        f"its view is worth {value_text(value)}{unit}, rank {rank} of {count} poses; "
+        f"the runner-up is worth {value_text(runner_up)}"
+    )
+
+
+def _weighed(step: SearchStep) -> list[str]:
+    """Return what the best view and the runner-up were worth and cost."""
+    if step.terms is None:
+        return ["it does not weigh what views cost"]
+    order = [step.chosen, *([step.runner_up] if step.runner_up is not None else [])]
+    views = ranked(step.candidates, step.values, step.terms, order)
+    return [f"{name}: {_terms(view)}" for name, view in zip(("best view", "runner-up"), views, strict=False)]
+
+
+def _terms(view: RankedView) -> str:
+    plan = "" if view.expected is None else f", plan from there {view.expected:.1f} s"
+    return (
+        f"{_pose(view.pose)}, chance {view.gain:.3f}, cost {view.seconds:.1f} s ({view.travel:.1f} m, "
+        f"{math.degrees(view.turn):.0f} deg), chance per second {view.index:.4f}{plan}"
     )
 
 
@@ -100,7 +129,7 @@ def outcome_table(story: SearchStory) -> Table:
     for heading in ("outcome", "object", "time [s]", "looks", "travel [m]"):
         table.add_column(escape(heading), justify="right")
     name = story.detection.name if story.detection is not None else "-"
-    outcome = "found" if story.found else "not found"
+    outcome = story.result.verdict
     table.add_row(outcome, name, f"{story.seconds:.1f}", str(story.poses), f"{story.travel:.1f}")
     return table
 
@@ -132,6 +161,8 @@ def story_json(story: SearchStory, pictures: Sequence[Path]) -> dict[str, Any]:
         "target": story.target,
         "found": story.found,
         "seconds": story.seconds,
+        "verdict": story.result.verdict,
+        "absence": story.result.absence,
         "poses": story.poses,
         "travel": story.travel,
         "detection": _detection(story.detection) if story.detection is not None else None,
@@ -147,6 +178,9 @@ def _step(step: SearchStep) -> dict[str, Any]:
         "pose": [step.pose.x, step.pose.y, step.pose.yaw],
         "value": step.value,
         "values": step.values.tolist(),
+        "unit": step.unit,
+        "terms": _weights_of(step),
+        "absence": step.absence,
         "travel": step.travel,
         "turn": step.turn,
         "seconds": step.seconds,
@@ -154,6 +188,13 @@ def _step(step: SearchStep) -> dict[str, Any]:
         "looked": step.looked,
         "detections": [_detection(seen) for seen in step.detections],
     }
+
+
+def _weights_of(step: SearchStep) -> dict[str, Any] | None:
+    if step.terms is None:
+        return None
+    (view,) = ranked(step.candidates, step.values, step.terms, [step.chosen])
+    return {name: value for name, value in asdict(view).items() if name not in ("pose", "equation_3")}
 
 
 def _detection(seen: Detection) -> dict[str, Any]:

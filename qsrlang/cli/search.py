@@ -46,6 +46,9 @@ def search(
         Path | None, typer.Option(help="Folder of the pictures, under runs/ by default.")
     ] = None,
     pictures: Annotated[bool, typer.Option(help="Draw a picture of every step.")] = True,
+    explain: Annotated[
+        bool, typer.Option(help="Tell what the best view and the runner-up were worth and cost.")
+    ] = False,
     form: OutputFormat = Format.TEXT,
 ) -> None:
     """Search for an object once and tell every step: what is believed, where it looks, why, what it saw."""
@@ -62,7 +65,7 @@ def search(
         steps.append(step)
         if folder is not None:
             drawn.append(_picture(opening, steps, folder))
-        narrate_step(console, opening, step, drawn[-1] if drawn else None)
+        narrate_step(console, opening, step, drawn[-1] if drawn else None, explain)
 
     story = opening.search(seed, trial, watch)
     narrate_end(console, story)

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from qsrlang.experiments.briefings import Briefing
 from qsrlang.experiments.places import Place, build_world
 from qsrlang.experiments.scenarios import Scenario
 from qsrlang.experiments.trials import Trial, trial_of
 from qsrlang.maps.navigation import NavigationGrid
 from qsrlang.planning.loop import Watcher, search_world
+from qsrlang.planning.noise import NoisyWorld
 from qsrlang.planning.outcome import SearchResult
 from qsrlang.planning.seeding import TrialSeeds
+from qsrlang.planning.sight import Sight
 from qsrlang.planning.world import World
 
 
@@ -47,12 +51,24 @@ class TrialWorker:
         briefing = self._briefings[job.arm]
         self._world.reset()
         seeds = TrialSeeds(self._setup.seed, job.number)
-        result = run_trial(self._world, briefing, self._setup.place.reachable, seeds)
+        seen = seen_through(self._world, self._setup.scenario, self._setup.place, briefing, seeds)
+        result = run_trial(seen, briefing, self._setup.place.reachable, seeds)
         return trial_of(job.arm, job.number, result, briefing.limits.seconds)
 
     def close(self) -> None:
         """Free the world."""
         self._world.close()
+
+
+def seen_through(
+    world: World, scenario: Scenario, place: Place, briefing: Briefing, seeds: TrialSeeds
+) -> World:
+    """Return the world as the scenario's camera shows it: itself where that does not err."""
+    if scenario.noise.is_none:
+        return world
+    sight = Sight(scenario.camera, scenario.floor_height, place.voxels)
+    aims = briefing.supports.centres + np.array([0.0, 0.0, 0.5 * place.voxels.resolution])
+    return NoisyWorld(world, scenario.noise, seeds, briefing.target, sight, aims)
 
 
 def run_trial(

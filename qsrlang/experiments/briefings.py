@@ -10,6 +10,7 @@ import numpy as np
 
 from qsrlang.arrays import FloatArray
 from qsrlang.errors import OutsideMapError, UnknownNameError, UnreachedTargetError
+from qsrlang.experiments.goals import goal_of, weights_of
 from qsrlang.experiments.places import Place
 from qsrlang.experiments.presets import PlannerEntry
 from qsrlang.experiments.scenarios import Arm, Scenario
@@ -17,13 +18,14 @@ from qsrlang.geometry.viewcone import ViewCone
 from qsrlang.maps.supports import Supports, find_supports
 from qsrlang.mixtures.answers import Where
 from qsrlang.mixtures.queries import KnowledgeBase, load
-from qsrlang.planning.belief import voxel_weights
 from qsrlang.planning.outcome import Limits
-from qsrlang.planning.planners import BeliefPlanner, Planner, QSRPlanner, RandomPlanner
-from qsrlang.planning.sight import Sight
+from qsrlang.planning.planners.believing import BeliefPlanner
+from qsrlang.planning.planners.paper import QSRPlanner, RandomPlanner
+from qsrlang.planning.planners.planner import Planner
+from qsrlang.planning.strategies.named import STRATEGIES
 from qsrlang.relations.graph import Landmark
 
-KNOWING = ("qsr", "belief")
+KNOWING = ("qsr", *STRATEGIES)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -77,27 +79,35 @@ def supports_of(scenario: Scenario, preset: PlannerEntry, place: Place) -> Suppo
 
 def _briefing(scenario: Scenario, arm: Arm, place: Place, supports: Supports, target: str) -> Briefing:
     preset, cone, places = arm.preset, arm.preset.cone(), supports.centres[:, :2]
-    weights, belief, landmarks = np.ones(len(places)), None, tuple[Landmark, ...]()
-    if arm.planner in KNOWING:
-        known = known_to(scenario, arm, place)
-        belief = _belief(known, arm, target)
-        landmarks = tuple(one for one in known.landmarks if not known.graph.classes[one.kind].is_surface)
-        claimed = 1.0 - belief.elsewhere
-        weights = voxel_weights(belief.mixture, places, preset.weight_floor, preset.weight_gain, claimed)
+    known = known_to(scenario, arm, place) if arm.planner in KNOWING else None
+    belief = _belief(known, arm, target) if known is not None else None
+    weights = np.ones(len(places)) if belief is None else weights_of(preset, belief, places)
     return Briefing(
         arm=arm.name,
         target=target,
         supports=supports,
         weights=weights,
         belief=belief,
-        landmarks=landmarks,
+        landmarks=() if known is None else _shown(known),
         cone=cone,
         limits=arm.limits,
-        planner=_planner(scenario, arm, place, supports, weights),
+        planner=_planner(scenario, arm, place, supports, weights, known, target),
     )
 
 
-def _planner(scenario: Scenario, arm: Arm, place: Place, supports: Supports, weights: FloatArray) -> Planner:
+def _shown(known: KnowledgeBase) -> tuple[Landmark, ...]:
+    return tuple(one for one in known.landmarks if not known.graph.classes[one.kind].is_surface)
+
+
+def _planner(
+    scenario: Scenario,
+    arm: Arm,
+    place: Place,
+    supports: Supports,
+    weights: FloatArray,
+    known: KnowledgeBase | None,
+    target: str,
+) -> Planner:
     cone, places = arm.preset.cone(), supports.centres[:, :2]
     match arm.planner:
         case "random":
@@ -106,11 +116,10 @@ def _planner(scenario: Scenario, arm: Arm, place: Place, supports: Supports, wei
             return QSRPlanner.of_planes(cone, places)
         case "qsr":
             return QSRPlanner(cone, places, weights)
-        case "belief":
-            looks = arm.preset.looks
-            sight = Sight(scenario.camera, scenario.floor_height, place.voxels)
-            aims = supports.centres + np.array([0.0, 0.0, 0.5 * place.voxels.resolution + looks.aim_height])
-            return BeliefPlanner(sight, aims, weights, looks.detection_rate)
+        case name:
+            assert known is not None
+            goal = goal_of(scenario, arm, place, supports, weights, known, target)
+            return BeliefPlanner((goal,), scenario.robot, STRATEGIES[name])
 
 
 def known_to(scenario: Scenario, arm: Arm, place: Place) -> KnowledgeBase:

@@ -13,6 +13,7 @@ from itertools import islice
 from typing import Any, Protocol, TypeVar, cast
 
 from qsrlang.errors import QSRError, ValueRangeError
+from qsrlang.planning.threads import use_threads
 
 MAX_PROCESSES = 256
 JOBS_IN_HAND = 4
@@ -122,6 +123,7 @@ class _Seat:
 
 def _start(make: Callable[[SetupT], Worker[JobT, DoneT]], setup: SetupT) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    use_threads(1)
     try:
         _Seat.worker = make(setup)
     except QSRError as error:

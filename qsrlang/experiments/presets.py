@@ -13,11 +13,16 @@ from pydantic import Field
 from qsrlang.errors import FileError, UnknownNameError, ValueRangeError
 from qsrlang.experiments.tomlfiles import Entry, EntryT, read_entry
 from qsrlang.geometry.viewcone import Sector, Triangle, ViewCone
+from qsrlang.planning.atlas import MAX_HEADINGS, Lattice
+from qsrlang.planning.detecting import Detector
+from qsrlang.planning.instances import Instances
 from qsrlang.planning.outcome import Limits
+from qsrlang.planning.repeats import Repeats
 from qsrlang.planning.sensing import Camera, Robot
 from qsrlang.resources import resource_root
 
 Positive = Annotated[float, Field(gt=0.0)]
+Share = Annotated[float, Field(ge=0.0, le=1.0)]
 Count = Annotated[int, Field(ge=1, le=1_000_000)]
 
 
@@ -105,11 +110,58 @@ class SupportsEntry(Entry):
 
 
 class SightEntry(Entry):
-    """What the planner `belief` assumes of a look: how often it shows what is visible, and where above a support
-    the target's centre is [m]."""
+    """What planners with a belief assume of a look: how often it shows what is visible, where above a support the
+    target's centre is [m], at how many times its size the rate is halved, and how often it reports what is not there.
+    """
 
     detection_rate: Annotated[float, Field(gt=0.0, le=1.0)]
     aim_height: Annotated[float, Field(ge=0.0)]
+    reach: Positive | None = None
+    false_alarms: Annotated[float, Field(ge=0.0, lt=1.0)] = 0.0
+
+    def detector(self) -> Detector:
+        """Return the detector."""
+        return Detector(self.detection_rate, self.reach or math.inf, self.false_alarms)
+
+
+class BeliefEntry(Entry):
+    """The prior of planners with a belief: the share that is even over all supports whatever is known, the chance that
+    the target is not there, how many there may be (a whole number, or the mean of a Poisson number), and how much of
+    a look is a repetition of one from the same pose.
+    """
+
+    floor: Share
+    absent: Annotated[float, Field(ge=0.0, lt=1.0)] = 0.0
+    instances: Positive = 1.0
+    poisson: bool = False
+    repeated: Share = 0.0
+
+    def number(self) -> Instances:
+        """Return how many instances there may be."""
+        return Instances(self.instances, self.poisson)
+
+    def repeats(self) -> Repeats:
+        """Return how alike looks are."""
+        return Repeats(self.repeated)
+
+
+class LatticeEntry(Entry):
+    """Where views are looked for: places every `spacing` [m], `offered` of which are drawn for each decision, and
+    `headings` at each; without it, poses are drawn at random.
+
+    `tilts_deg` are those the camera can take, its own where none is given.
+    """
+
+    spacing: Positive
+    headings: Annotated[int, Field(ge=1, le=MAX_HEADINGS)]
+    offered: Count
+    tilts_deg: list[Annotated[float, Field(gt=-90.0, lt=90.0)]] = Field(default_factory=list, max_length=20)
+
+    def lattice(self) -> Lattice:
+        """Return the lattice."""
+        return Lattice(
+            self.spacing, self.headings, tuple(math.radians(tilt) for tilt in self.tilts_deg), self.offered
+        )
 
 
 class LimitsEntry(Entry):
@@ -130,10 +182,12 @@ class PlannerEntry(Entry):
     supports: SupportsEntry
     limits: LimitsEntry
     sight: SightEntry | None = None
+    belief: BeliefEntry | None = None
+    lattice: LatticeEntry | None = None
 
     @property
     def looks(self) -> SightEntry:
-        """What the planner `belief` assumes of a look; ValueRangeError where the file does not say."""
+        """What planners with a belief assume of a look; ValueRangeError where the file does not say."""
         if self.sight is None:
             raise ValueRangeError(
                 "the table 'sight' of the preset", "absent", "detection_rate and aim_height"

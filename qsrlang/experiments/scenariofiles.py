@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from qsrlang.experiments.presets import LimitsEntry
 from qsrlang.experiments.tomlfiles import Entry
-from qsrlang.planning.planners import PlannerName
+from qsrlang.planning.planners.planner import PlannerName
 
 MAX_PLACEMENTS = 1_000
 MAX_ARMS = 100

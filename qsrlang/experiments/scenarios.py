@@ -22,8 +22,9 @@ from qsrlang.experiments.presets import (
 from qsrlang.experiments.scenariofiles import ArmEntry, PlacementEntry, ScenarioEntry
 from qsrlang.experiments.tomlfiles import read_entry
 from qsrlang.geometry.pose import Pose2
+from qsrlang.planning.noise import Noise
 from qsrlang.planning.outcome import Limits
-from qsrlang.planning.planners import PlannerName
+from qsrlang.planning.planners.planner import PlannerName
 from qsrlang.planning.sensing import Camera, Robot
 from qsrlang.relations.imports import find_knowledge, read_library, read_source
 from qsrlang.resources import data_root, resource_root
@@ -76,6 +77,7 @@ class Scenario:
     placements: tuple[PlacementEntry, ...]
     variants: Mapping[str, tuple[str, ...]]
     arms: Mapping[str, Arm]
+    noise: Noise
     fingerprint: str
 
     def arm(self, name: str) -> Arm:
@@ -96,12 +98,16 @@ class Scenario:
 
 
 def load_scenario(
-    scenario: str | Path, camera: str | None = None, robot: str | None = None, knowledge: str | None = None
+    scenario: str | Path,
+    camera: str | None = None,
+    robot: str | None = None,
+    knowledge: str | None = None,
+    noise: Noise | None = None,
 ) -> Scenario:
     """Return a shipped scenario by its name, or the one in a file whose path ends in .toml.
 
     `camera` and `robot` name presets, `knowledge` a .qsr file, to use in place of the scenario's; arms with knowledge
-    of their own keep it. Raises FileError and UnknownNameError.
+    of their own keep it. `noise` is how the camera errs, not at all by default. Raises FileError and UnknownNameError.
     """
     path = find_scenario(str(scenario))
     entry = read_entry(path, ScenarioEntry)
@@ -126,6 +132,7 @@ def load_scenario(
         placements=tuple(entry.placements),
         variants=_variants(entry),
         arms={name: _arm(name, arm, entry, path.parent) for name, arm in entry.arms.items()},
+        noise=noise or Noise(),
         fingerprint="",
     )
     return replace(made, fingerprint=_fingerprint(entry, made))
@@ -168,7 +175,7 @@ def _map_file(name: str, beside: Path) -> Path:
 def _arm(name: str, arm: ArmEntry, entry: ScenarioEntry, beside: Path) -> Arm:
     named = find_preset("planners", arm.preset or entry.preset, beside)
     preset = read_planner(named)
-    if arm.planner == "belief" and preset.sight is None:
+    if arm.planner not in ("random", "planes", "qsr") and preset.sight is None:
         raise FileError(
             named.path, "has no table 'sight'", f"arm '{name}' needs one, as in the preset 'aware'"
         )
@@ -190,6 +197,7 @@ def _fingerprint(entry: ScenarioEntry, made: Scenario) -> str:
         repr(made.robot),
         repr(made.body),
         *(repr(arm.preset) for arm in arms),
+        *([] if made.noise.is_none else [repr(made.noise)]),
     ]
     digest = hashlib.sha256("\n".join(said).encode())
     told = (file for name in sorted({arm.knowledge for arm in arms}) for file in _knowledge_files(name))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from qsrlang.experiments.arms import run_trial
+from qsrlang.experiments.arms import run_trial, seen_through
 from qsrlang.experiments.briefings import Briefing, brief
 from qsrlang.experiments.places import Place, build_world, read_place
 from qsrlang.experiments.scenarios import Scenario, load_scenario
@@ -28,9 +28,9 @@ class Opening:
         """Search in a world made for this one search; `watch` is called with every step once it is over."""
         with build_world(self.scenario, self.place, self.variant) as world:
             seeds = TrialSeeds(seed, trial)
-            return SearchStory(
-                self, seed, trial, run_trial(world, self.briefing, self.place.reachable, seeds, watch)
-            )
+            seen = seen_through(world, self.scenario, self.place, self.briefing, seeds)
+            result = run_trial(seen, self.briefing, self.place.reachable, seeds, watch)
+            return SearchStory(self, seed, trial, result)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

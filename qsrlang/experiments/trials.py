@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from qsrlang.planning.noise import FALSE_ALARM
 from qsrlang.planning.outcome import SearchResult
 
 DECIMALS = 6
@@ -30,7 +31,8 @@ class Trial:
 
 
 def trial_of(arm: str, number: int, result: SearchResult, limit: float) -> Trial:
-    """Return the trial that a search was; one that found nothing took until the time limit [s]."""
-    seconds = result.seconds if result.found else limit
+    """Return the trial that a search was; one that found nothing, or a false alarm, took until the time limit [s]."""
     name = result.detection.name if result.detection is not None else ""
-    return Trial(arm, number, result.found, seconds, result.poses, result.travel, name)
+    found = result.found and name != FALSE_ALARM
+    seconds = result.seconds if found else limit
+    return Trial(arm, number, found, seconds, result.poses, result.travel, name)

@@ -101,6 +101,23 @@ class NavigationGrid:
         parts, _ = ndimage.label(self.navigable)
         return NavigationGrid(self.grid, self.clearance, parts == parts[cell])
 
+    def closed_at(self, point_map: FloatArray, radius: float, from_map: FloatArray) -> NavigationGrid:
+        """Return the cells that are left when those within `radius` [m] of a point (2,) are closed.
+
+        Only what is connected to the cell nearest to `from_map` (2,) counts. Raises NoNavigablePoseError where
+        nothing is left.
+        """
+        rows, columns = self._cells().T
+        offsets = self.grid.centres_of(np.column_stack([rows, columns])) - np.asarray(point_map)
+        shut = np.einsum("nd,nd->n", offsets, offsets) <= radius * radius
+        navigable = self.navigable.copy()
+        navigable[rows[shut], columns[shut]] = False
+        if not navigable.any():
+            raise NoNavigablePoseError(self.grid.source, self.clearance)
+        left = NavigationGrid(self.grid, self.clearance, navigable)
+        x, y = left.nearest_navigable(from_map)
+        return left.reachable_from(Pose2(x, y))
+
     def sample_poses(self, count: int, rng: np.random.Generator) -> FloatArray:
         """Return random poses (count, 3) of x, y [m] and yaw [rad]: uniform cell, place in the cell and yaw.
 

@@ -33,11 +33,12 @@ def clear_rays(grid: VoxelGrid, starts_map: npt.ArrayLike, ends_map: npt.ArrayLi
 def _look(voxels, starts, ends, clear):  # type: ignore[no-untyped-def]
     for n in range(len(starts)):
         x, y, z = starts[n, 0], starts[n, 1], starts[n, 2]
-        clear[n] = _is_clear(voxels, x, y, z, ends[n, 0] - x, ends[n, 1] - y, ends[n, 2] - z)
+        clear[n] = is_clear(voxels, x, y, z, ends[n, 0] - x, ends[n, 1] - y, ends[n, 2] - z)
 
 
 @njit(cache=True)
-def _is_clear(voxels, x, y, z, dx, dy, dz):  # type: ignore[no-untyped-def]
+def is_clear(voxels, x, y, z, dx, dy, dz):  # type: ignore[no-untyped-def]
+    """Return whether no occupied voxel lies between (x, y, z) and (x + dx, y + dy, z + dz), in voxels, but the last."""
     nx, ny, nz = voxels.shape
     first, last = clip(x, dx, nx, 0.0, 1.0)
     first, last = clip(y, dy, ny, first, last)

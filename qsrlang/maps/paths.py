@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from qsrlang.arrays import FloatArray, frozen_array
+from qsrlang.arrays import BoolArray, FloatArray, frozen_array
 from qsrlang.errors import ValueRangeError
 from qsrlang.geometry.angles import wrap
 from qsrlang.maps.navigation import NavigationGrid
@@ -47,12 +47,16 @@ class DistanceField:
     def lengths_to(self, points_map: npt.ArrayLike) -> FloatArray:
         """Return the lengths (N,) [m] of the paths to points (N, 2), infinite where there is no way."""
         points = frozen_array("the goals of paths", points_map, (None, 2))
-        reached = self._reached(points)
         lengths = np.full(len(points), np.inf)
-        start, goals = self._steps(self.start[None])[0], self._steps(points[reached])
+        reached, start, goals = self.in_cells(points)
         steps = trace_lengths(self.navigation.navigable, self.parents, start, goals)
         lengths[reached] = steps * self.navigation.grid.resolution
         return lengths
+
+    def in_cells(self, points_map: FloatArray) -> tuple[BoolArray, FloatArray, FloatArray]:
+        """Return which points (N, 2) have a way to them, and in cells the start (2,) and those points (R, 2)."""
+        reached = self._reached(points_map)
+        return reached, self._steps(self.start[None])[0], self._steps(points_map[reached])
 
     def path_to(self, point_map: npt.ArrayLike) -> FloatArray:
         """Return the corners (K, 2) [m] of the path to a point (x, y), the exact start first, the point last.
@@ -72,13 +76,14 @@ class DistanceField:
         return corners
 
     def _steps(self, points_map: FloatArray) -> FloatArray:
-        # Points on the grid in cells, none rounded over the border of its cell or of the grid.
+        # Points on the grid in cells, none rounded over the border of its cell or of the grid. To a billionth of a
+        # cell, so that among equally short paths the same one is found wherever the grid lies.
         grid = self.navigation.grid
         cells = np.clip(grid.cells_of(points_map), 0, np.array(grid.cells.shape) - 1)[:, ::-1]
-        steps = grid.origin.transform_inverse(points_map) / grid.resolution
+        steps = np.round(grid.origin.transform_inverse(points_map) / grid.resolution, 9)
         return np.clip(steps, cells, np.nextafter(cells + 1.0, cells))
 
-    def _reached(self, points_map: FloatArray) -> npt.NDArray[np.bool_]:
+    def _reached(self, points_map: FloatArray) -> BoolArray:
         reached = self.navigation.is_navigable(points_map)
         rows, columns = self.navigation.grid.cells_of(points_map[reached]).T
         reached[reached] = self.parents[rows * self.navigation.navigable.shape[1] + columns] >= 0

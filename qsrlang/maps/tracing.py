@@ -34,6 +34,18 @@ def trace_lengths(
     return lengths
 
 
+def trace_ways(
+    open_cells: BoolArray, parents: ParentArray, start: FloatArray, goals: FloatArray
+) -> FloatArray:
+    """Return (4, N): length, first direction, sum of turns and last direction of the paths to `goals` (N, 2).
+
+    A path of no length has no directions (nan).
+    """
+    ways = np.empty((4, len(goals)))
+    _ways(open_cells, parents, start, goals, ways, *_room(parents))
+    return ways
+
+
 def _room(parents: ParentArray) -> tuple[FloatArray, FloatArray, FloatArray, IntArray]:
     size = int(np.count_nonzero(parents >= 0)) + 2
     return np.empty((size, 2)), np.empty((size, 2)), np.empty(size), np.empty(size, dtype=np.int64)
@@ -46,6 +58,27 @@ def _lengths(open_cells, parents, start, goals, lengths, path, chain, best, befo
         lengths[n] = 0.0
         for k in range(1, count):
             lengths[n] += math.hypot(path[k, 0] - path[k - 1, 0], path[k, 1] - path[k - 1, 1])
+
+
+@njit(cache=True)
+def _ways(open_cells, parents, start, goals, ways, path, chain, best, before):  # type: ignore[no-untyped-def]
+    for n in range(len(goals)):
+        count = _trace(open_cells, parents, start, goals[n], path, chain, best, before)
+        length = bends = 0.0
+        first = last = math.nan
+        for k in range(1, count):
+            dx, dy = path[k, 0] - path[k - 1, 0], path[k, 1] - path[k - 1, 1]
+            if dx == 0.0 and dy == 0.0:
+                continue
+            towards = math.atan2(dy, dx)
+            if length == 0.0:
+                first = towards
+            else:
+                bend = abs(towards - last)
+                bends += min(bend, 2.0 * math.pi - bend)
+            length += math.hypot(dx, dy)
+            last = towards
+        ways[0, n], ways[1, n], ways[2, n], ways[3, n] = length, first, bends, last
 
 
 @njit(cache=True)

@@ -8,7 +8,7 @@ import numpy as np
 
 from qsrlang.errors import ValueRangeError
 
-_CANDIDATES, _PICK = 0, 1
+_CANDIDATES, _PICK, _ERRORS = 0, 1, 2
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +30,11 @@ class TrialSeeds:
     def pick(self, step: int) -> np.random.Generator:
         """Return the stream of a planner's own draws at a step."""
         return self._stream(step, _PICK)
+
+    def errors(self, thing: int, view: tuple[int, ...]) -> np.random.Generator:
+        """Return the stream of what a camera gets wrong of a thing in a view, both given as whole numbers."""
+        key = (self.trial, _ERRORS, thing, *view)
+        return np.random.default_rng(np.random.SeedSequence(self.seed, spawn_key=key))
 
     def _stream(self, step: int, purpose: int) -> np.random.Generator:
         return np.random.default_rng(np.random.SeedSequence(self.seed, spawn_key=(self.trial, step, purpose)))

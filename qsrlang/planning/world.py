@@ -46,5 +46,5 @@ class World(Protocol):
     def drive(self, path: FloatArray, yaw: float) -> Drive:
         """Drive along the points (K, 2) of a path, first its own place, and turn to `yaw` at the end."""
 
-    def look(self) -> Look:
-        """Dwell, look once, and return what was recognised."""
+    def look(self, tilt: float | None = None) -> Look:
+        """Dwell, look once, and return what was recognised; `tilt` [rad] stands in for that of the camera."""

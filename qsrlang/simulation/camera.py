@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from qsrlang.arrays import BoolArray, FloatArray, IntArray, frozen_array
 from qsrlang.geometry.pose import Pose2
+from qsrlang.planning.frusta import axes_of, eyes_of
 from qsrlang.planning.sensing import Camera
-from qsrlang.planning.sight import axes_of, eyes_of
 from qsrlang.planning.world import Detection
 from qsrlang.simulation.engine import NOTHING, Engine
 from qsrlang.simulation.rooms import Thing
@@ -85,6 +85,12 @@ class SemanticCamera:
 
     def __init__(self, engine: Engine, camera: Camera, floor: float, targets: Targets) -> None:
         self._engine, self._camera, self._floor, self._targets = engine, camera, floor, targets
+
+    def tilted(self, tilt: float | None) -> SemanticCamera:
+        """Return the camera with another tilt [rad], itself where that is None."""
+        if tilt is None or tilt == self._camera.tilt:
+            return self
+        return SemanticCamera(self._engine, replace(self._camera, tilt=tilt), self._floor, self._targets)
 
     def visible(self, poses: FloatArray) -> BoolArray:
         """Return which of the K targets are recognised from the poses (N, 3) of x, y, yaw: (N, K)."""

@@ -8,8 +8,8 @@ import numpy as np
 
 from qsrlang.arrays import BoolArray, FloatArray, IntArray
 from qsrlang.geometry.pose import Pose2
+from qsrlang.planning.frusta import axes_of, eyes_of
 from qsrlang.planning.sensing import Camera
-from qsrlang.planning.sight import axes_of, eyes_of
 from qsrlang.simulation.engine import Engine, Lens
 
 FARTHEST = 1.0 - 1e-6

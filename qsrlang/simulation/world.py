@@ -138,9 +138,9 @@ class PybulletWorld:
         self._pose, travel, turn = self._body.follow(self._pose, points, yaw)
         return Drive(self._pose, travel, turn, travel / self._robot.speed + turn / self._robot.turn_rate)
 
-    def look(self) -> Look:
-        """Dwell, look once, and return what was recognised."""
-        return Look(self._camera.detections(self._pose), self._robot.dwell)
+    def look(self, tilt: float | None = None) -> Look:
+        """Dwell, look once, and return what was recognised; `tilt` [rad] stands in for that of the camera."""
+        return Look(self._camera.tilted(tilt).detections(self._pose), self._robot.dwell)
 
     def is_free(self, pose: Pose2) -> bool:
         """Return whether the robot would touch nothing at a pose."""

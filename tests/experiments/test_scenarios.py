@@ -104,7 +104,7 @@ BAD_TEXT = [
         'planner = "qsr"',
         'planner = "qrs"',
         "field 'arms.qsr.planner'",
-        "'random', 'planes', 'qsr' or 'belief'",
+        "'random', 'planes', 'qsr', 'belief', 'nearest', 'index', 'rollout', 'tour' or 'exact'",
     ),
     ("x = 1.0", 'x = "one"', "field 'start.x'", "valid number"),
     ("x = 1.0", "x = inf", "field 'start.x'", "change it"),

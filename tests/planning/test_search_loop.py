@@ -12,7 +12,7 @@ from qsrlang.maps.occupancy import Cell, OccupancyGrid
 from qsrlang.maps.paths import path_length, turn_angles
 from qsrlang.planning.loop import search_world
 from qsrlang.planning.outcome import Limits, SearchResult
-from qsrlang.planning.planners import QSRPlanner, RandomPlanner
+from qsrlang.planning.planners.paper import QSRPlanner, RandomPlanner
 from qsrlang.planning.seeding import TrialSeeds
 from qsrlang.planning.visibility import in_view
 from qsrlang.planning.world import Detection, Drive, Look
@@ -41,7 +41,7 @@ class PaperWorld:
         self.pose = Pose2(float(path[-1, 0]), float(path[-1, 1]), yaw)
         return Drive(self.pose, travel, turn, travel / 0.5 + turn)
 
-    def look(self):
+    def look(self, tilt=None):
         self.looks += 1
         here = [[self.pose.x, self.pose.y, self.pose.yaw]]
         seen = [thing for thing in self.things if in_view(here, CONE, [thing.position[:2]])[0, 0]]

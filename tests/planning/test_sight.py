@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from qsrlang.errors import ValueRangeError
@@ -12,7 +12,12 @@ from qsrlang.geometry.pose import Pose2
 from qsrlang.maps.occlusion import clear_rays
 from qsrlang.maps.occupancy import Cell
 from qsrlang.maps.voxels import VoxelGrid
-from qsrlang.planning.planners import BeliefPlanner, QSRPlanner
+from qsrlang.planning.belief import Belief
+from qsrlang.planning.detecting import Detector
+from qsrlang.planning.frusta import Extent, eyes_of, planes_of
+from qsrlang.planning.goals import Goal
+from qsrlang.planning.planners.paper import QSRPlanner
+from qsrlang.planning.seeing import mark_in_view, mark_plainly
 from qsrlang.planning.sensing import Camera
 from qsrlang.planning.sight import Sight
 
@@ -87,22 +92,30 @@ def test_frustum_near_far_height_and_tilt_decide():
     assert tilted.visible([[0.0, 0.0, 0.0]], points)[0].tolist()[3:5] == [True, False]
 
 
+def goal(sight, points, weights, rate):
+    return Goal("Cup", Belief.of_weights(points, weights), sight, Detector(rate))
+
+
+@settings(max_examples=10)
 @given(seeds, st.floats(0.1, 1.0))
 def test_values_are_a_double_loop_and_belief_never_grows(seed, rate):
     rng = np.random.default_rng(seed)
     sight = Sight(CAMERA, 0.0, place(rng))
-    points, belief = rng.uniform([-1.4, -1.4, 0.1], [1.4, 1.4, 1.0], (60, 3)), rng.random(60)
+    points, weights = rng.uniform([-1.4, -1.4, 0.1], [1.4, 1.4, 1.0], (60, 3)), rng.random(60)
     poses = np.column_stack([rng.uniform(-1.5, 1.5, (8, 2)), rng.uniform(-math.pi, math.pi, 8)])
-    planner = BeliefPlanner(sight, points, belief, rate)
-    choice = planner.choose(poses, Pose2(0.0, 0.0), rng)
-    for pose, value in zip(poses, choice.values, strict=True):
+    before = goal(sight, points, weights, rate)
+    views = before.views_from(poses)
+    for pose, value in zip(poses, views.values(before.belief.mass), strict=True):
         slow = sum(
-            rate * b * bool(sight.visible([pose], [x])[0, 0]) for x, b in zip(points, belief, strict=True)
+            rate * b * bool(sight.visible([pose], [x])[0, 0])
+            for x, b in zip(points, before.belief.mass, strict=True)
         )
-        assert value == pytest.approx(slow)
-    after = planner.after_miss(Pose2(*poses[choice.index]))
-    seen = sight.visible(poses[[choice.index]], points)[0]
-    np.testing.assert_allclose(after.belief, np.where(seen, belief * (1.0 - rate), belief))
+        assert value == pytest.approx(slow, rel=1e-6)
+    after = before.after_look(Pose2(*poses[0]), ())
+    seen = sight.visible(poses[:1], points)[0]
+    np.testing.assert_allclose(
+        after.belief.mass, before.belief.mass * np.where(seen, 1.0 - rate, 1.0), rtol=1e-6, atol=1e-9
+    )
 
 
 def test_overlapping_views_are_not_counted_twice():
@@ -110,15 +123,15 @@ def test_overlapping_views_are_not_counted_twice():
     rng = np.random.default_rng(5)
     sight = Sight(CAMERA, 0.0, place(rng, share=0.0))
     points = rng.uniform([-1.0, -1.0, 0.4], [1.0, 1.0, 0.6], (200, 3))
-    planner = BeliefPlanner(sight, points, np.ones(200), 1.0)
-    pose = Pose2(-1.4, 0.0, 0.0)
-    views = np.array([[pose.x, pose.y, pose.yaw], [pose.x, pose.y, pose.yaw + 0.3]])
-    before = planner.choose(views, pose, rng).values
-    after = planner.after_miss(pose).choose(views, pose, rng).values
-    both = sight.visible(views, points).any(axis=0).sum()
-    assert after[0] == 0.0
-    assert before[0] + after[1] == pytest.approx(both)
-    assert after[1] < before[1]
+    before = goal(sight, points, np.ones(200), 1.0)
+    views = np.array([[-1.4, 0.0, 0.0], [-1.4, 0.0, 0.3]])
+    values = before.views_from(views).values(before.belief.mass)
+    after = before.after_look(Pose2(*views[0]), ())
+    again = after.views_from(views).values(after.belief.mass)
+    both = sight.visible(views, points).any(axis=0).mean()
+    assert again[0] == 0.0
+    assert values[0] + again[1] == pytest.approx(both)
+    assert again[1] < values[1]
 
 
 def test_hidden_voxels_keep_their_weight():
@@ -126,16 +139,30 @@ def test_hidden_voxels_keep_their_weight():
     voxels[15] = Cell.OCCUPIED
     sight = Sight(CAMERA, 0.0, VoxelGrid(voxels, 0.1, np.array([-1.5, -1.5, 0.0]), "wall"))
     points = np.array([[-0.3, 0.0, 0.6], [0.5, 0.0, 0.6]])
-    after = BeliefPlanner(sight, points, np.ones(2), 0.9).after_miss(Pose2(-1.45, 0.0))
-    np.testing.assert_allclose(after.belief, [0.1, 1.0])
+    after = goal(sight, points, np.ones(2), 0.9).after_look(Pose2(-1.45, 0.0), ())
+    np.testing.assert_allclose(after.belief.mass, [0.05, 0.5], rtol=1e-6)
+
+
+@given(seeds, st.booleans())
+def test_numpy_and_compiled_kernels_see_the_same(seed, thick):
+    rng = np.random.default_rng(seed)
+    extent = Extent(0.1, 0.1) if thick else Extent()
+    sight = Sight(CAMERA, 0.0, place(rng), extent)
+    points = rng.uniform([-1.4, -1.4, 0.1], [1.4, 1.4, 1.0], (80, 3))
+    poses = np.column_stack([rng.uniform(-1.5, 1.5, (10, 2)), rng.uniform(-math.pi, math.pi, 10)])
+    planes, eyes = planes_of(poses, CAMERA, 0.0, extent), eyes_of(poses, CAMERA, 0.0)
+    plain, compiled = np.empty((10, 80), dtype=bool), np.empty((10, 80), dtype=bool)
+    mark_plainly(planes, eyes, points, sight.voxels, plain)
+    mark_in_view(planes, eyes, points, sight.voxels, compiled)
+    np.testing.assert_array_equal(plain, compiled)
 
 
 def test_the_paper_s_planners_learn_nothing_from_an_empty_view():
     planner = QSRPlanner(None, np.zeros((1, 2)), np.ones(1))
-    assert planner.after_miss(Pose2(0.0, 0.0)) is planner
+    assert planner.after_look(Pose2(0.0, 0.0), ()) is planner
 
 
 @pytest.mark.parametrize("rate", [0.0, 1.1, math.nan])
 def test_senseless_detection_rates_are_refused(rate):
     with pytest.raises(ValueRangeError, match="detection rate"):
-        BeliefPlanner(Sight(CAMERA, 0.0, place(np.random.default_rng(0))), np.zeros((1, 3)), np.ones(1), rate)
+        Detector(rate)

@@ -39,7 +39,7 @@ def _step(number=0, count=20, *, same=False, looked=True, detections=(), seed=0)
     path = np.array([[origin.x, origin.y], [0.5, 0.5], candidates[chosen, :2]])
     return SearchStep(
         number=number, origin=origin, candidates=candidates, values=values, chosen=chosen, path=path, travel=3.0,
-        turn=1.0, seconds=12.0, clock=12.0 * (number + 1) + 0.25, looked=looked, detections=detections,
+        turn=1.0, seconds=12.0, clock=12.0 * (number + 1) + 0.25, looked=looked, detections=detections, reached=origin,
     )  # fmt: skip
 
 

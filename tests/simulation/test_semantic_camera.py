@@ -5,8 +5,8 @@ from hypothesis import strategies as st
 from simulation_scenes import CAMERA, ROBOT, box, table_room
 
 from qsrlang.geometry.pose import Pose2
+from qsrlang.planning.frusta import axes_of, eyes_of
 from qsrlang.planning.sensing import Camera
-from qsrlang.planning.sight import axes_of, eyes_of
 from qsrlang.simulation.camera import boxes_in_frustum
 from qsrlang.simulation.depth import depth_image
 from qsrlang.simulation.objects import Placement
@@ -118,3 +118,10 @@ def test_rule_and_picture_agree(kitchen_world):
             detections += int((shown | row).sum())
     assert detections >= 25
     assert agreed >= 0.75 * detections
+
+
+def test_a_camera_can_be_tilted_for_one_look(table_world):
+    level = table_world.look()
+    assert table_world.look(CAMERA.tilt) == level
+    assert not table_world.look(1.2).detections, "it looks at the ceiling"
+    assert table_world.look() == level
