@@ -8,7 +8,8 @@ import numpy as np
 
 from qsrlang.arrays import BoolArray, FloatArray, IntArray
 from qsrlang.geometry.angles import rotation
-from qsrlang.learning.sums import CELL, PlacementSums
+from qsrlang.learning.summing import CELL
+from qsrlang.learning.sums import PlacementSums
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -56,7 +56,7 @@ class PairDensity:
         assert self.mixture is not None
         inverses = np.linalg.inv(self.mixture.covariances)
         peaks = self.mixture.weights / (2.0 * np.pi * np.sqrt(np.linalg.det(self.mixture.covariances)))
-        heights = np.zeros((len(points), len(BANDWIDTHS) + 1))
+        heights = np.zeros((len(points), int(self.groups.max()) + 1))
         _add_heights(np.ascontiguousarray(points), self.mixture.means, inverses, peaks, self.groups, heights)
         return heights
 

@@ -53,7 +53,7 @@ def together(known: Sequence[HeldOut]) -> HeldOut:
 
 def held_out(cells: PairCells) -> HeldOut:
     """Return what the experts, each taught by all places but one, say of that one, cut to the support there."""
-    tests = _tests(cells)
+    tests = test_cells(cells)
     means = cells.means_on_support[tests]
     columns = [1.0 / cells.areas[tests], _wide_densities(cells, tests, means)]
     others = (cells.places[tests, None] != cells.places) * cells.shares
@@ -65,7 +65,7 @@ def held_out(cells: PairCells) -> HeldOut:
     return HeldOut(np.column_stack(columns), weights / totals[cells.places[tests]], cells.places[tests])
 
 
-def _tests(cells: PairCells) -> IntArray:
+def test_cells(cells: PairCells) -> IntArray:
     """Return the cells to test on: all, or MAX_TESTS spread evenly."""
     return np.unique(np.linspace(0, len(cells) - 1, MAX_TESTS).astype(np.int64))
 

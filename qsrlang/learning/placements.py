@@ -1,4 +1,7 @@
-"""From scenes to placements: every object as seen from the first instance of every other class in its scene."""
+"""From scenes to placements: every object as seen from the first instance of every other class in its scene.
+
+Two objects on different supports tell nothing of each other; an object is also seen from its own support.
+"""
 
 from __future__ import annotations
 
@@ -14,9 +17,12 @@ from qsrlang.learning.observations import Observations
 REACH = 2.5
 # People seldom turn a thing further from its support's own heading; a larger turn is taken for one without a front.
 MAX_TURN = 1.2
+# A support with a shorter side is one whose size is not known [m].
+MIN_SIDE = 0.05
 # In a row of geometry: where the referent lies (2), the least and greatest x and y of the support (4), both about the
 # relatum, and how far the relatum is turned from its support.
 GEOMETRY = 7
+STAND = 9
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,9 +47,7 @@ class Placements:
 
 def placements_of(seen: Observations) -> Placements:
     """Return all placements of the scenes, whose rows stand together; those further away than REACH are left out."""
-    supports = _support_rows(seen)
-    poses = np.column_stack([seen.number(name) for name in ("x", "y", "yaw", "length", "width")])
-    bounds = np.flatnonzero(np.diff(seen.code("scene"), prepend=-1, append=-1))
+    bounds, supports, poses = scene_bounds(seen), support_rows(seen), poses_of(seen)
     room = _count(bounds)
     pairs, geometry = np.empty((room, 2), dtype=np.int64), np.empty((room, GEOMETRY))
     found = _place(bounds, seen.code("kind"), supports, poses, pairs, geometry)
@@ -53,7 +57,17 @@ def placements_of(seen: Observations) -> Placements:
     )
 
 
-def _support_rows(seen: Observations) -> IntArray:
+def scene_bounds(seen: Observations) -> IntArray:
+    """Return where each scene begins, and the end: (S + 1,)."""
+    return np.flatnonzero(np.diff(seen.code("scene"), prepend=-1, append=-1))
+
+
+def poses_of(seen: Observations) -> FloatArray:
+    """Return x, y, yaw, length and width of each row: (N, 5)."""
+    return np.column_stack([seen.number(name) for name in ("x", "y", "yaw", "length", "width")])
+
+
+def support_rows(seen: Observations) -> IntArray:
     """Return for each row the row of its support in the same scene, -1 without one: (N,)."""
     if len(seen) == 0:
         return np.zeros(0, dtype=np.int64)
@@ -92,37 +106,55 @@ def _axis(yaw, carrier):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _place(bounds, kinds, supports, poses, pairs, geometry):  # type: ignore[no-untyped-def]
-    found = 0
-    for scene in range(len(bounds) - 1):
-        start, end = bounds[scene], bounds[scene + 1]
-        for relatum in range(start, end):
-            if (kinds[start:relatum] == kinds[relatum]).any():
-                continue
-            for referent in range(start, end):
-                if kinds[referent] == kinds[relatum] or supports[relatum] == referent:
-                    continue
-                carrier = supports[referent]
-                if _measure(poses, referent, relatum, carrier, geometry[found]):
-                    pairs[found, 0], pairs[found, 1] = referent, relatum
-                    found += 1
-    return found
-
-
-@njit(cache=True)
-def _measure(poses, referent, relatum, carrier, row):  # type: ignore[no-untyped-def]
-    dx, dy = poses[referent, 0] - poses[relatum, 0], poses[referent, 1] - poses[relatum, 1]
-    if dx * dx + dy * dy > REACH * REACH:
-        return False
-    heading = poses[carrier, 2] if carrier >= 0 else np.nan
-    axis, turn = _axis(poses[relatum, 2], heading)
-    cos, sin = np.cos(axis), np.sin(axis)
-    row[0], row[1], row[6] = cos * dx + sin * dy, cos * dy - sin * dx, turn
-    row[2], row[3], row[4], row[5] = -REACH, -REACH, REACH, REACH
-    if carrier >= 0:
+def take_stand(poses, relatum, carrier, stand):  # type: ignore[no-untyped-def]
+    """Fill cosine and sine of the axis of a relatum, its turn, the bounds (4) of the carrier, the turn's two."""
+    axis, turn = _axis(poses[relatum, 2], poses[carrier, 2] if carrier >= 0 else np.nan)
+    stand[0], stand[1], stand[2] = np.cos(axis), np.sin(axis), turn
+    stand[3], stand[4], stand[5], stand[6] = -REACH, -REACH, REACH, REACH
+    stand[7], stand[8] = np.cos(turn), np.sin(turn)
+    if carrier >= 0 and min(poses[carrier, 3], poses[carrier, 4]) >= MIN_SIDE:
         cos, sin = np.cos(axis - turn), np.sin(axis - turn)
         dx, dy = poses[carrier, 0] - poses[relatum, 0], poses[carrier, 1] - poses[relatum, 1]
         x, y = cos * dx + sin * dy, cos * dy - sin * dx
-        row[2], row[4] = x - 0.5 * poses[carrier, 3], x + 0.5 * poses[carrier, 3]
-        row[3], row[5] = y - 0.5 * poses[carrier, 4], y + 0.5 * poses[carrier, 4]
-    return True
+        stand[3], stand[5] = x - 0.5 * poses[carrier, 3], x + 0.5 * poses[carrier, 3]
+        stand[4], stand[6] = y - 0.5 * poses[carrier, 4], y + 0.5 * poses[carrier, 4]
+
+
+@njit(cache=True)
+def is_second(kinds, start, row):  # type: ignore[no-untyped-def]
+    """Return whether a row is not the first of its class in a scene that begins at `start`."""
+    for other in range(start, row):  # noqa: SIM110 (a generator is slow here)
+        if kinds[other] == kinds[row]:
+            return True
+    return False
+
+
+@njit(cache=True)
+def relates(kinds, supports, referent, relatum):  # type: ignore[no-untyped-def]
+    """Return whether two rows of a scene are of different classes, and on one support or the one on the other."""
+    carrier = supports[referent]
+    return kinds[referent] != kinds[relatum] and (carrier == relatum or carrier == supports[relatum])
+
+
+@njit(cache=True)
+def _place(bounds, kinds, supports, poses, pairs, geometry):  # type: ignore[no-untyped-def]
+    found = 0
+    stand = np.empty(STAND)
+    for scene in range(len(bounds) - 1):
+        start, end = bounds[scene], bounds[scene + 1]
+        for relatum in range(start, end):
+            if is_second(kinds, start, relatum):
+                continue
+            for referent in range(start, end):
+                if not relates(kinds, supports, referent, relatum):
+                    continue
+                dx, dy = poses[referent, 0] - poses[relatum, 0], poses[referent, 1] - poses[relatum, 1]
+                if dx * dx + dy * dy > REACH * REACH:
+                    continue
+                take_stand(poses, relatum, supports[referent], stand)
+                pairs[found, 0], pairs[found, 1] = referent, relatum
+                geometry[found, 0] = stand[0] * dx + stand[1] * dy
+                geometry[found, 1] = stand[0] * dy - stand[1] * dx
+                geometry[found, 2:6], geometry[found, 6] = stand[3:7], stand[2]
+                found += 1
+    return found

@@ -15,14 +15,10 @@ import numpy as np
 from qsrlang.arrays import BoolArray, FloatArray, IntArray, frozen_array
 from qsrlang.errors import ValueRangeError
 from qsrlang.learning.observations import Observations
-from qsrlang.learning.placements import placements_of
+from qsrlang.learning.summing import HOURS, MOMENTS, add_rows, summed_scenes
 
-# The side of a cell [m]; within one, placements are told apart by their moments alone.
-CELL = 0.15
-HOURS = 24
-BATCH = 20_000
+BATCH = 50_000
 KEYS = ("referent", "relatum", "place", "column", "row")
-MOMENTS = ("x", "y", "xx", "xy", "yy", "low x", "low y", "high x", "high y", "cos", "sin")
 _BITS = (12, 12, 20, 8, 8)
 _MIDDLE = 128
 
@@ -62,20 +58,13 @@ class PlacementSums:
     @classmethod
     def of(cls, seen: Observations) -> PlacementSums:
         """Return the sums over observations whose scenes are whole and stand together."""
-        placed = placements_of(seen)
-        cells = np.floor(placed.points / CELL + 0.5).astype(np.int64)
-        names = (
-            seen.code("kind")[placed.referents],
-            seen.code("kind")[placed.relata],
-            seen.code("place")[placed.referents],
-        )
-        off = placed.points - CELL * cells
-        x, y = off.T
-        turned = np.column_stack([np.cos(placed.turns), np.sin(placed.turns)])
-        moments = np.column_stack([x, y, x * x, x * y, y * y, placed.low, placed.high, turned])
-        hours = seen.hours[placed.referents].astype(np.int64)
-        keys = np.column_stack([*names, cells])
-        return _summed(keys, moments, hours, seen.number("confidence")[placed.referents], seen.words)
+        kinds, words = _few(seen.code("kind"), seen.words, 0)
+        places, place_words = _few(seen.code("place"), seen.words, len(words))
+        words = words + place_words
+        if len(words) >= 1 << _BITS[0]:
+            raise ValueRangeError("the number of names in a batch", len(words), f"fewer than {1 << _BITS[0]}")
+        keys, moments, hours = summed_scenes(seen, kinds, places)
+        return added((cls(keys, moments, hours, words),))
 
     @property
     def counts(self) -> FloatArray:
@@ -127,8 +116,8 @@ def added(parts: Sequence[PlacementSums]) -> PlacementSums:
     keys = np.concatenate([_renamed(part, numbers) for part in parts])
     packed, first, which = np.unique(_packed(keys), return_index=True, return_inverse=True)
     moments, hours = np.zeros((len(packed), len(MOMENTS))), np.zeros((len(packed), HOURS))
-    np.add.at(moments, which, np.concatenate([part.moments for part in parts]))
-    np.add.at(hours, which, np.concatenate([part.hours for part in parts]))
+    add_rows(which, np.concatenate([part.moments for part in parts]), moments)
+    add_rows(which, np.concatenate([part.hours for part in parts]), hours)
     return PlacementSums(keys[first], moments, hours, words)
 
 
@@ -150,22 +139,7 @@ def _packed(keys: IntArray) -> IntArray:
     return packed
 
 
-def _summed(
-    keys: IntArray, moments: FloatArray, hours: IntArray, shares: FloatArray, words: tuple[str, ...]
-) -> PlacementSums:
-    """Return the sums by distinct key; each placement counts by the share its detector gave it."""
-    named = _few_names(keys, words)
-    packed, first, which = np.unique(_packed(named[0]), return_index=True, return_inverse=True)
-    weighed = moments * shares[:, None]
-    summed = np.empty((len(packed), len(MOMENTS)))
-    for number, column in enumerate(weighed.T):
-        summed[:, number] = np.bincount(which, weights=column, minlength=len(packed))
-    counted = np.zeros(HOURS * len(packed))
-    counted += np.bincount(which * HOURS + hours, weights=shares, minlength=len(counted))
-    return PlacementSums(named[0][first], summed, counted.reshape(-1, HOURS), named[1])
-
-
-def _few_names(keys: IntArray, words: tuple[str, ...]) -> tuple[IntArray, tuple[str, ...]]:
-    """Return keys that number only the words they use, and those words."""
-    used, which = np.unique(keys[:, :3], return_inverse=True)
-    return np.concatenate([which.reshape(-1, 3), keys[:, 3:]], axis=1), tuple(words[one] for one in used)
+def _few(codes: IntArray, words: Sequence[str], start: int) -> tuple[IntArray, tuple[str, ...]]:
+    """Return codes that number, from `start`, only the words they use, and those words."""
+    used, which = np.unique(codes, return_inverse=True)
+    return which + start, tuple(words[one] for one in used)
