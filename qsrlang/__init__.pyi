@@ -28,6 +28,20 @@ from .language.diagnostics import Diagnostic, Diagnostics, Edit, LanguageError
 from .language.parser import parse, parse_formula, parse_landmark, parse_place, parse_query
 from .language.printing.formatter import format_source
 from .language.printing.printer import print_document, print_query
+from .learning.differences import Change, differences
+from .learning.experience import Experience, experience_of
+from .learning.formats.tables import write_observations
+from .learning.fusion import Fusion, learn_fusion
+from .learning.learner import Learned, learn
+from .learning.merging import Lesson, learn_into
+from .learning.observations import Observations
+from .learning.reading import read_observations
+from .learning.rhythm import Rhythm, rhythm_of
+from .learning.screening import Reading
+from .learning.specific import PlaceLearner
+from .learning.store import ObservationStore
+from .learning.sums import PlacementSums, sums_of
+from .learning.writing import Contexts
 from .maps.mapping import VoxelMapper
 from .maps.navigation import NavigationGrid, occupancy_from_voxels
 from .maps.occupancy import Cell, OccupancyGrid
@@ -83,20 +97,24 @@ __all__ = [
     "BlockedPoseError",
     "Camera",
     "Cell",
+    "Change",
     "Circumstances",
     "Comparison",
     "Component",
     "Conflict",
     "Consistency",
+    "Contexts",
     "Detection",
     "Diagnostic",
     "Diagnostics",
     "DistanceField",
     "Drive",
     "Edit",
+    "Experience",
     "Experiment",
     "Explanation",
     "FileError",
+    "Fusion",
     "GaussianMixture",
     "Impossible",
     "ImpossibleConditionError",
@@ -106,17 +124,23 @@ __all__ = [
     "LandmarkRanking",
     "LandmarkValue",
     "LanguageError",
+    "Learned",
+    "Lesson",
     "Limits",
     "Look",
     "MissingFacingError",
     "NavigationGrid",
     "NoNavigablePoseError",
     "NoRoomError",
+    "ObservationStore",
+    "Observations",
     "OccupancyGrid",
     "OctoMap",
     "Opening",
     "OutsideMapError",
+    "PlaceLearner",
     "Placement",
+    "PlacementSums",
     "Planner",
     "Pose2",
     "Probability",
@@ -125,9 +149,11 @@ __all__ = [
     "QSRError",
     "QSRPlanner",
     "RandomPlanner",
+    "Reading",
     "Reason",
     "RelationGraph",
     "Relaxation",
+    "Rhythm",
     "Robot",
     "Room",
     "Scenario",
@@ -157,6 +183,7 @@ __all__ = [
     "compose",
     "converse",
     "data_root",
+    "differences",
     "direction_of",
     "draw_answer",
     "draw_found_by_time",
@@ -166,10 +193,14 @@ __all__ = [
     "draw_story",
     "draw_voxels",
     "entailed",
+    "experience_of",
     "find_conflicts",
     "find_supports",
     "format_source",
     "in_view",
+    "learn",
+    "learn_fusion",
+    "learn_into",
     "load",
     "load_ipython_extension",
     "load_room",
@@ -186,17 +217,21 @@ __all__ = [
     "print_document",
     "print_query",
     "qualify",
+    "read_observations",
     "read_octomap",
     "read_ros_map",
     "relations_between",
     "relative_angle",
+    "rhythm_of",
     "save_figure",
     "scene_picture",
     "search",
     "search_world",
     "shortest_path",
+    "sums_of",
     "survey_room",
     "unload_ipython_extension",
     "view_values",
     "voxel_weights",
+    "write_observations",
 ]

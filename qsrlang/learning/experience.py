@@ -120,7 +120,7 @@ def read_experience(path: Path) -> Experience:
     if path.stat().st_size > MAX_BYTES:
         raise FileError(path, f"is larger than {MAX_BYTES} bytes", "learn from fewer places at a time")
     try:
-        with np.load(path, allow_pickle=False) as file:
+        with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as file:
             keys, moments, hours = file["keys"], file["moments"], file["hours"]
             placements = PlacementSums(
                 keys.reshape(-1, 5),

@@ -98,8 +98,9 @@ class Observations:
 
     def batches(self, size: int) -> Iterator[Observations]:
         """Yield the rows in order, in parts of about `size` rows that cut no scene in two."""
-        starts = np.flatnonzero(np.diff(self.code("scene"), prepend=-1))
-        bounds = [0, *starts[np.searchsorted(starts, np.arange(size, len(self), size))[:-1]], len(self)]
+        edges = np.flatnonzero(np.diff(self.code("scene"), prepend=-1, append=-1))
+        cuts = edges[np.searchsorted(edges, np.arange(size, len(self), size))]
+        bounds = [0, *cuts.tolist(), len(self)]
         for low, high in pairwise(bounds):
             if high > low:
                 yield self.take(slice(low, high))

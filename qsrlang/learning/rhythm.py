@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.stats import t as student
 
 from qsrlang.arrays import FloatArray, IntArray
 from qsrlang.learning.cells import PairCells
@@ -22,8 +23,8 @@ DIRECTIONS = ("behind-of", "left-of", "in-front-of", "right-of")
 _PRIOR = 0.02
 _MIN_PLACES = 3
 _TINY = 1e-3
-# A rhythm must gain on what was held out by this many standard errors, or it is taken for chance.
-SURE = 2.0
+# How often a rhythm is seen where there is none; several orders are tried, so each has its part (Bonferroni).
+FALSE_ALARM = 0.05
 
 
 def direction_numbers(points: FloatArray) -> IntArray:
@@ -57,10 +58,12 @@ def rhythm_of(cells: PairCells) -> Rhythm:
 
 
 def _is_sure(gains: FloatArray) -> bool:
-    """Return whether gains (F,) over no rhythm are SURE standard errors of their mean above 0."""
-    if len(gains) < 2:
+    """Return whether gains (F,) over no rhythm are above 0 by Student's test, at FALSE_ALARM over all orders."""
+    count, spread = len(gains), gains.std(ddof=1) if len(gains) > 1 else 0.0
+    if spread == 0.0:
         return False
-    return bool(gains.mean() > SURE * gains.std(ddof=1) / np.sqrt(len(gains)) and gains.mean() > 0.0)
+    bound = student.ppf(1.0 - FALSE_ALARM / (len(ORDERS) - 1), count - 1)
+    return bool(gains.mean() > bound * spread / np.sqrt(count))
 
 
 def direction_counts(cells: PairCells) -> FloatArray:

@@ -37,7 +37,9 @@ class Stack:
 
 
 def core_weights(known: Sequence[HeldOut]) -> FloatArray:
-    """Return the weights (E,) for all pairs together, each place of each pair with the same weight."""
+    """Return the weights (E,) for all pairs together, each place of each pair with the same weight; of none, none."""
+    if not known:
+        return np.zeros(0)
     densities = np.concatenate([one.densities for one in known])
     weights = np.concatenate([one.weights for one in known])
     count = densities.shape[1]
