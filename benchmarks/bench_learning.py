@@ -232,7 +232,13 @@ def fusion(seen: Observations) -> None:
 
 def desk(seen: Observations) -> None:
     """Other desks and the first k scans of a desk, in the order of time, tested on its later scans."""
-    gains: dict[int, dict[tuple[str, str], list[float]]] = {k: {pair: [] for pair in PAIRS} for k in SCANS}
+    gains = desk_gains(seen)
+    print_rows({f"above general, {k} scans": {pair: gains[pair][k] for pair in PAIRS} for k in SCANS})
+
+
+def desk_gains(seen: Observations) -> dict[tuple[str, str], dict[int, float]]:
+    """For each pair and number of scans, the gain over general knowledge [nat/object], the mean over desks."""
+    gains: dict[tuple[str, str], dict[int, list[float]]] = {pair: {k: [] for k in SCANS} for pair in PAIRS}
     for name, others in left_out(seen):
         here = seen.among("place", [name])
         learner = PlaceLearner.of(sums_of(others), PAIRS)
@@ -248,11 +254,8 @@ def desk(seen: Observations) -> None:
                 density = learner.density(pair, sums_of(first))
                 own = later.score(density.pdf(later.points, later.low, later.high, later.turns))
                 general = later.score(whole(learner.general.pairs[pair], later))
-                gains[k][pair].append(float(own.mean() - general.mean()))
-    rows = {
-        f"above general, {k} scans": {p: float(np.mean(v)) for p, v in g.items()} for k, g in gains.items()
-    }
-    print_rows(rows)
+                gains[pair][k].append(float(own.mean() - general.mean()))
+    return {pair: {k: float(np.mean(v)) for k, v in found.items()} for pair, found in gains.items()}
 
 
 def scan_order(here: Observations) -> dict[str, int]:

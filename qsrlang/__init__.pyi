@@ -68,6 +68,7 @@ from .planning.visibility import in_view, view_values
 from .planning.world import Detection, Drive, Look, World
 from .plotting.answers import draw_answer
 from .plotting.canvas import save_figure
+from .plotting.curves import draw_learning_curves
 from .plotting.maps import draw_map
 from .plotting.mixtures import draw_mixture
 from .plotting.statistics import draw_found_by_time
@@ -187,6 +188,7 @@ __all__ = [
     "direction_of",
     "draw_answer",
     "draw_found_by_time",
+    "draw_learning_curves",
     "draw_map",
     "draw_mixture",
     "draw_search_step",

@@ -2,7 +2,8 @@
 
 log p(x) = sum_l a_l log p_l(x) - log Z, on the support (a logarithmic opinion pool, Genest and Zidek 1986). What
 neighbours say is not independent, so the exponents a_l are learned: they maximise the held-out likelihood of the
-places, those of a referent drawn to those of all referents; the pull is the one that says most of places held out.
+places, those of a referent drawn to a part of those of all referents; part and pull are the ones that say most of places held
+out.
 """
 
 from __future__ import annotations
@@ -20,7 +21,9 @@ from qsrlang.learning.grids import Sight, grid_density, grid_of, sights_of
 from qsrlang.learning.learner import Learned, Pair
 from qsrlang.learning.observations import Observations
 
-PULLS = (0.3, 1.0, 3.0, 10.0)
+PULLS = (1.0, 3.0, 10.0, 100.0)
+# What a referent's exponents are drawn to: these parts of the shared ones, for some referents heed no neighbour much.
+PARTS = (1.0, 0.5, 0.2)
 FOLDS = 3
 MAX_EXPONENT = 2.0
 MAX_SIGHTS = 5
@@ -70,10 +73,16 @@ def learn_fusion(seen: Observations, learned: Learned, referents: Sequence[str])
     cases = {name: _cases(seen, learned, name, relata) for name in referents}
     cases = {name: case for name, case in cases.items() if len(case.logs)}
     shared = _fitted(list(cases.values()), np.full(len(relata), _START), _LOOSE)
-    pull = max(PULLS, key=lambda one: sum(_score(case, shared, one) for case in cases.values()))
-    exponents = {name: _fitted([case], shared, pull) for name, case in cases.items()}
+    exponents = {name: _chosen(case, shared) for name, case in cases.items()}
     named = {(n, r): float(a) for n, found in exponents.items() for r, a in zip(relata, found, strict=True)}
     return Fusion(densities, {pair: value for pair, value in named.items() if pair in densities})
+
+
+def _chosen(cases: _Cases, shared: FloatArray) -> FloatArray:
+    """Return a referent's exponents, by the part of the shared ones and the pull to it that say most."""
+    choices = [(part, pull) for part in PARTS for pull in PULLS]
+    part, pull = max(choices, key=lambda one: _score(cases, one[0] * shared, one[1]))
+    return _fitted([cases], part * shared, pull)
 
 
 def _cases(seen: Observations, learned: Learned, referent: str, relata: Sequence[str]) -> _Cases:
