@@ -1,6 +1,6 @@
 """What learning is worth on desks it has not seen, beside scikit-learn's density estimators, and how fast it is.
 
-python benchmarks/bench_learning.py [pairs] [fusion] [desk] [day] [speed]
+python benchmarks/bench_learning.py [pairs] [fusion] [desk] [area] [day] [speed]
 
 Needs the KTH desk table (QSR_DATA, default ../shared/data). A desk is left out, everything is learned from the others
 (bandwidths, shares, concentrations, exponents too), and every object on it is scored by its log density [nat]: cut to
@@ -21,6 +21,7 @@ import numpy as np
 from sklearn.exceptions import ConvergenceWarning
 from sklearn.mixture import BayesianGaussianMixture, GaussianMixture
 
+import qsrlang as qsr
 from qsrlang.learning.cells import cells_of
 from qsrlang.learning.experience import experience_of
 from qsrlang.learning.fits import written_mixture
@@ -258,6 +259,59 @@ def desk_gains(seen: Observations) -> dict[tuple[str, str], dict[int, float]]:
     return {pair: {k: float(np.mean(v)) for k, v in found.items()} for pair, found in gains.items()}
 
 
+def area(seen: Observations) -> None:
+    """Part of the desk that is looked at before the object is, from the likeliest place on; desks weigh the same."""
+    hand = qsr.load("office/desk")
+    hand_names = {"Mug": "Cup"}
+    found: dict[str, dict[tuple[str, str], list[float]]] = {}
+    for _, others in left_out(seen):
+        learned = learn(sums_of(others))
+        here = seen.among("place", sorted(set(seen.text("place")) - set(others.text("place"))))
+        for pair in PAIRS:
+            one = cases_of(here, *pair)
+            if len(one.points) == 0:
+                continue
+            name = hand_names.get(pair[0], pair[0])
+            known = name in hand.classes
+            by_hand = hand.where(name, wrt=pair[1]).mixture if known else None
+            own = learned.pairs[pair].density.mixture
+            written = None if own is None else written_mixture(learned.pairs[pair].density)
+            for what, mixture in (("by hand (office/desk)", by_hand), ("learned, as written", written)):
+                part = float(searched(mixture, one).mean())
+                found.setdefault(what, {}).setdefault(pair, []).append(part)
+    print("without knowledge it is 0.5 of the desk for every pair; so it is where a file says nothing of one")
+    for what, parts in found.items():
+        row = "".join(f"{np.mean(parts[pair]):9.2f}" for pair in PAIRS)
+        print(f"{what:28s}{row}{np.mean([np.mean(parts[pair]) for pair in PAIRS]):9.3f}")
+    print_paired(found)
+
+
+def searched(mixture: qsr.GaussianMixture | None, cases: Cases) -> np.ndarray:
+    """The part of the desk that is likelier than where the object is: (N,)."""
+    if mixture is None:
+        return np.full(len(cases.points), 0.5)
+    parts = []
+    shares = (np.arange(40) + 0.5) / 40
+    grid = np.stack(np.meshgrid(shares, shares, indexing="ij"), axis=-1).reshape(-1, 2)
+    for n in range(len(cases.points)):
+        cos, sin = np.cos(cases.turns[n]), np.sin(cases.turns[n])
+        points = (cases.low[n] + grid * (cases.high[n] - cases.low[n])) @ np.array([[cos, -sin], [sin, cos]])
+        parts.append(float((mixture.pdf(points) > mixture.pdf(cases.points[n : n + 1])).mean()))
+    return np.array(parts)
+
+
+def print_paired(found: dict[str, dict[tuple[str, str], list[float]]]) -> None:
+    by_hand, learned = (np.concatenate([parts[pair] for pair in PAIRS]) for parts in found.values())
+    rng = np.random.default_rng(0)
+    for what, other in (("by hand", by_hand), ("nothing known", np.full(len(learned), 0.5))):
+        gains = other - learned
+        drawn = rng.choice(gains, size=(10_000, len(gains))).mean(axis=1)
+        low, high = np.quantile(drawn, (0.025, 0.975))
+        print(
+            f"less than with {what}: {gains.mean():.3f} [{low:.3f}, {high:.3f}] of the desk; {len(gains)} cases"
+        )
+
+
 def scan_order(here: Observations) -> dict[str, int]:
     times = dict(zip(here.text("scene"), here.number("time").tolist(), strict=True))
     return {scene: rank for rank, scene in enumerate(sorted(times, key=lambda scene: (times[scene], scene)))}
@@ -360,7 +414,7 @@ def repeated(seen: Observations, count: int) -> Observations:
     return Observations(codes, numbers, seen.words).take(slice(0, count))
 
 
-PARTS = {"pairs": pairs, "fusion": fusion, "desk": desk, "day": day, "speed": speed}
+PARTS = {"pairs": pairs, "fusion": fusion, "desk": desk, "area": area, "day": day, "speed": speed}
 
 
 def main() -> None:

@@ -2,8 +2,8 @@
 
 log p(x) = sum_l a_l log p_l(x) - log Z, on the support (a logarithmic opinion pool, Genest and Zidek 1986). What
 neighbours say is not independent, so the exponents a_l are learned: they maximise the held-out likelihood of the
-places, those of a referent drawn to a part of those of all referents; part and pull are the ones that say most of places held
-out.
+places, those of a referent drawn to a part of those of all referents; part and pull are the ones that say most of
+places held out.
 """
 
 from __future__ import annotations

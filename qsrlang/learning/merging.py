@@ -20,7 +20,7 @@ from qsrlang.learning.experience import (
     no_experience,
     read_experience,
 )
-from qsrlang.learning.writing import Contexts, learned_text
+from qsrlang.learning.writing import GENERAL, Contexts, learned_text
 from qsrlang.relations.checking import check_text
 from qsrlang.relations.imports import read_library, read_source
 
@@ -40,13 +40,14 @@ class Lesson:
     experience: Experience
 
 
-def learn_into(path: Path, new: Experience, by: Contexts, keep_sums: bool = True) -> Lesson:
+def learn_into(file: Path | str, new: Experience, by: Contexts = GENERAL, keep_sums: bool = True) -> Lesson:
     """Add an experience to what a file was learned from before, and write what all of it teaches into the file.
 
     The sums lie beside the file, under a name that the file gives; learning from them and new observations is
     learning from all observations. Without `keep_sums` none are kept, for knowledge that is handed on. What people
     wrote stays as it is, byte for byte. Raises FileError, or LanguageError where the file is wrong.
     """
+    path = Path(file)
     before = read_source(path) if path.exists() else Source(path.name, _HEAD, path)
     raise_errors(parse_source(before).diagnostics)
     old = _sums_of(path, before.text)

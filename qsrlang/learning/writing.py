@@ -26,6 +26,9 @@ class Contexts:
     time: bool = False
 
 
+GENERAL = Contexts()
+
+
 def learned_text(experience: Experience, declared: Collection[str], by: Contexts) -> str:
     """Return what an experience teaches as statements in canonical form; classes `declared` elsewhere are not again.
 
@@ -33,7 +36,7 @@ def learned_text(experience: Experience, declared: Collection[str], by: Contexts
     and what it gains in nats an object over knowing nothing, at places held out.
     """
     shares = support_shares(experience.objects)
-    kept = selected(learn(experience.placements), shares)
+    kept = selected(learn(experience.placements), shares, experience.objects)
     lines = [*_classes(experience.objects, kept, shares, declared)]
     for one in kept:
         lines += ["", *_pair(one)]
@@ -119,29 +122,36 @@ def _supports(share: SupportShares) -> Iterator[str]:
 
 
 def _in_contexts(one: LearnedPair, by: Contexts) -> Iterator[str]:
-    if by.room:
-        yield from _by_room(one)
+    """Yield contexts; where room and hour both matter, each room is told for each part of the day as well."""
+    rooms = _fits_by_room(one) if by.room else {}
     rhythm = rhythm_of(one.cells) if by.time else None
-    if rhythm is not None and rhythm.order > 0:
-        yield from _by_time(one, rhythm)
-
-
-def _by_room(one: LearnedPair) -> Iterator[str]:
-    general = written_mixture(one.density)
-    for number in sorted(set(one.cells.places.tolist()), key=lambda number: one.cells.words[number]):
-        own = one.cells.take(one.cells.places == number)
-        yield f"in room {one.cells.words[number]} {{"
-        yield from _observed(one, place_fits(own, general))
-        yield "}"
-
-
-def _by_time(one: LearnedPair, rhythm: Rhythm) -> Iterator[str]:
-    fits = general_fits(one)
+    for room, fits in rooms.items():
+        yield from _context(one, f"room {room}", fits)
+    if rhythm is None or rhythm.order == 0:
+        return
     yield f"## The day of {one.pair[0]} about {one.pair[1]}: Fourier terms up to order {rhythm.order}."
-    for start, end in DAY_PARTS:
-        ratios = rhythm.shares[start:end].mean(axis=0) / rhythm.shares.mean(axis=0)
-        factors = dict(zip(DIRECTIONS, ratios.tolist(), strict=True))
-        changed = [fit.scaled(factors[fit.relation]) for fit in fits]
-        yield f"in from {start:02d}:00 to {end % 24:02d}:00 {{"
-        yield from _observed(one, [fit for fit in changed if fit.count > 0.0])
-        yield "}"
+    for part in DAY_PARTS:
+        hours = f"from {part[0]:02d}:00 to {part[1] % 24:02d}:00"
+        yield from _context(one, hours, _at_hours(general_fits(one), rhythm, part))
+        for room, fits in rooms.items():
+            yield from _context(one, f"room {room}, {hours}", _at_hours(fits, rhythm, part))
+
+
+def _context(one: LearnedPair, conditions: str, fits: Sequence[FittedCount]) -> Iterator[str]:
+    yield f"in {conditions} {{"
+    yield from _observed(one, fits)
+    yield "}"
+
+
+def _fits_by_room(one: LearnedPair) -> dict[str, list[FittedCount]]:
+    general = written_mixture(one.density)
+    rooms = sorted((one.cells.words[number], number) for number in {*one.cells.places.tolist()})
+    cells = {room: one.cells.take(one.cells.places == number) for room, number in rooms}
+    return {room: place_fits(own, general) for room, own in cells.items()}
+
+
+def _at_hours(fits: Sequence[FittedCount], rhythm: Rhythm, part: tuple[int, int]) -> list[FittedCount]:
+    """Return counts as they are in a part of the day: each direction's times what the hour makes of its share."""
+    ratios = rhythm.shares[part[0] : part[1]].mean(axis=0) / rhythm.shares.mean(axis=0)
+    factors = dict(zip(DIRECTIONS, ratios.tolist(), strict=True))
+    return [fit.scaled(factors[fit.relation]) for fit in fits]

@@ -1,6 +1,8 @@
+from itertools import product
+
 import numpy as np
 import pytest
-from learning.logs import desks
+from learning.logs import desks, row
 
 import qsrlang as qsr
 from qsrlang.errors import FileError
@@ -8,7 +10,7 @@ from qsrlang.language.diagnostics import LanguageError
 from qsrlang.learning.differences import differences, divergence_bits
 from qsrlang.learning.experience import experience_of
 from qsrlang.learning.merging import BEGIN, END, learn_into, merged, without_learned
-from qsrlang.learning.observations import joined
+from qsrlang.learning.observations import Observations, joined
 from qsrlang.learning.writing import Contexts
 from qsrlang.mixtures.gaussian import GaussianMixture
 
@@ -84,6 +86,30 @@ def test_rooms_are_told_apart(tmp_path):
         sides.append(here.where(told[0], wrt=told[1]).mixture.moments()[0][1])
     assert min(sides) < -0.2 and max(sides) > 0.2
     assert min(sides) < general[1] < max(sides)
+
+
+def test_rooms_and_hours_are_told_apart_together(tmp_path):
+    """On every desk the mouse is right of the keyboard before noon, and left of it after."""
+    rows = []
+    for place, day, hour in product(range(6), range(4), range(0, 24, 2)):
+        at = {
+            "place": f"room-{place}",
+            "scene": f"{place}-{day}-{hour}",
+            "time": 86400.0 * day + 3600.0 * hour,
+        }
+        y = 0.3 if hour >= 12 else -0.3
+        rows += [row("Desk", 0.4, 0.0, **at), row("Keyboard", 0.3, 0.0, **at), row("Mouse", 0.3, y, **at)]
+    path = tmp_path / "desk.qsr"
+    learn_into(path, experience_of(Observations.of(rows)), Contexts(room=True, time=True))
+    knowledge = qsr.load(path)
+    for room in (None, "room-3"):
+        sides = [
+            knowledge.under(qsr.Circumstances(room=room, minutes=60 * hour))
+            .where("Mouse", wrt="Keyboard")
+            .mixture.moments()[0][1]
+            for hour in (9, 15)
+        ]
+        assert sides[0] < -0.1 and sides[1] > 0.1
 
 
 def test_a_block_takes_the_place_of_the_block_before():

@@ -75,8 +75,9 @@ def json_lines_text(observations: Observations) -> str:
     return "".join(f"{row}\n" for row in rows)
 
 
-def write_observations(observations: Observations, path: Path) -> None:
-    """Write observations as CSV, JSON Lines or Parquet, by the ending of the path; raises FileError."""
+def write_observations(observations: Observations, file: Path | str) -> None:
+    """Write observations as CSV, JSON Lines or Parquet, by the ending of the file's name; raises FileError."""
+    path = Path(file)
     if path.suffix == ".csv":
         write_whole(path, csv_text(observations))
     elif path.suffix == ".jsonl":
