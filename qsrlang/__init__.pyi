@@ -38,6 +38,7 @@ from .learning.observations import Observations
 from .learning.reading import read_observations
 from .learning.rhythm import Rhythm, rhythm_of
 from .learning.screening import Reading
+from .learning.searches import sightings_of
 from .learning.specific import PlaceLearner
 from .learning.store import ObservationStore
 from .learning.sums import PlacementSums, sums_of
@@ -230,6 +231,7 @@ __all__ = [
     "search",
     "search_world",
     "shortest_path",
+    "sightings_of",
     "sums_of",
     "survey_room",
     "unload_ipython_extension",

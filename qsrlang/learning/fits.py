@@ -10,6 +10,7 @@ import numpy as np
 from qsrlang.arrays import BoolArray, FloatArray
 from qsrlang.learning.cells import PairCells
 from qsrlang.learning.density import PairDensity
+from qsrlang.learning.experts import WIDE_DEVIATION
 from qsrlang.learning.learner import LearnedPair
 from qsrlang.learning.reduction import reduced
 from qsrlang.learning.rhythm import DIRECTIONS, direction_numbers
@@ -19,8 +20,8 @@ from qsrlang.mixtures.gaussian import GaussianMixture
 PRECISE = 4
 # What general knowledge weighs beside the sightings at one place, in sightings; half of a first one is chance.
 STRENGTH = 0.6
-# The wide expert and the widest kernel tell little more than about where; they are written as one Gaussian.
-_WIDE_GROUPS = (0, 4)
+# Components at least this wide [m] tell little more than about where; they are written as one Gaussian.
+WIDE = 0.3
 _MIN_COUNT = 0.05
 _FREEDOM = 4.0
 # How far a thing wanders about its usual place on a desk before any was measured there [m].
@@ -51,15 +52,24 @@ def written_mixture(density: PairDensity) -> GaussianMixture:
     """Return the few Gaussians that stand for a density in a file; what is anywhere goes to the widest of them."""
     assert density.mixture is not None
     weights = density.mixture.weights * (1.0 - density.anywhere)
-    wide = np.isin(density.groups, _WIDE_GROUPS)
     means, covariances = density.mixture.means, density.mixture.covariances
+    wide = np.linalg.det(covariances) ** 0.25 >= WIDE
     parts = []
     if weights[~wide].sum() > 0.0:
         precise = GaussianMixture(weights[~wide] / weights[~wide].sum(), means[~wide], covariances[~wide])
         parts.append((float(weights[~wide].sum()), reduced(precise, PRECISE)))
-    rest = GaussianMixture(weights[wide] / weights[wide].sum(), means[wide], covariances[wide])
-    parts.append((float(weights[wide].sum()) + density.anywhere, reduced(rest, 1)))
-    return mixed(parts)
+    rest = _rest(density.mixture, wide & (weights > 0.0))
+    parts.append((float(weights[wide].sum()) + density.anywhere, rest))
+    return mixed([part for part in parts if part[0] > 0.0])
+
+
+def _rest(mixture: GaussianMixture, wide: BoolArray) -> GaussianMixture:
+    """Return one Gaussian for the wide components; without any, for all, as much wider as those would be."""
+    if wide.any():
+        weights = mixture.weights[wide] / mixture.weights[wide].sum()
+        return reduced(GaussianMixture(weights, mixture.means[wide], mixture.covariances[wide]), 1)
+    mean, covariance = mixture.moments()
+    return GaussianMixture(np.ones(1), mean[None], covariance[None] + WIDE_DEVIATION**2 * np.eye(2))
 
 
 def mixed(parts: Sequence[tuple[float, GaussianMixture]]) -> GaussianMixture:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -11,6 +12,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from qsrlang.files import write_whole
+from qsrlang.language.words import MARKS, WORD
 from qsrlang.learning.observations import NOWHERE, NUMBERS, TEXTS, Observations, Row
 
 MAX_METRES = 1000.0
@@ -26,6 +28,7 @@ _DEFAULTS = {
     "z": 0.0,
     "confidence": 1.0,
 }
+_NAME = re.compile(WORD)
 _SIZES = ("length", "width", "height")
 
 
@@ -96,9 +99,18 @@ def sound(row: Row) -> Row:
     if missing:
         raise Unsound(f"without {missing[0]}")
     texts = {name: str(row.get(name) or _DEFAULTS.get(name, NOWHERE)) for name in TEXTS}
+    texts |= {name: as_name(texts[name], name) for name in ("kind", "place") if texts[name]}
     numbers = {name: _number(name, row.get(name)) for name in NUMBERS}
     _check(numbers)
     return texts | numbers
+
+
+def as_name(text: str, column: str) -> str:
+    """Return a text as a name of the language: `coffee mug` is `coffee-mug`, and the place `133` is `place-133`."""
+    if _NAME.fullmatch(text):
+        return text
+    joined = "-".join(re.findall(rf"[\w{MARKS}]+", text))
+    return joined if _NAME.fullmatch(joined) else f"{'class' if column == 'kind' else column}-{joined or 'x'}"
 
 
 def _number(name: str, value: object) -> float:

@@ -14,14 +14,15 @@ from qsrlang.learning.supports import SupportShares
 MAX_RELATA = 2
 MIN_GAIN = 0.1
 MIN_PLACES = 5
-MIN_SEEN = 20
+MIN_SEEN = 10
 LEAST_SIDE = 0.01
 
 
 def selected(learned: Learned, shares: Sequence[SupportShares], objects: ObjectSums) -> list[LearnedPair]:
     """Return the pairs to write, by relatum: for each referent the MAX_RELATA that gain most over all places.
 
-    A pair gains MIN_GAIN nats an object or more, over MIN_SEEN sightings at MIN_PLACES places or more. What
+    A pair gains MIN_GAIN nats an object or more, over MIN_SEEN sightings at MIN_PLACES places or more
+    (at all, where there are fewer). What
     carries the referent is left out, for that cuts its density already, and so is a relatum that is found on several
     supports itself. Of two classes the relatum is the one with the greater product of what it tells of others, over all
     its pairs, and its size, for indirect search pays where the landmark is easier to see (Wixson and Ballard 1994); so
@@ -29,10 +30,13 @@ def selected(learned: Learned, shares: Sequence[SupportShares], objects: ObjectS
     """
     carriers = {(share.kind, support) for share in shares for support in share.supports}
     roaming = {share.kind for share in shares if len(share.supports) > 1}
+    most = max(
+        (one.cells.place_count for one in (*learned.pairs.values(), *learned.local.values())), default=0
+    )
     telling = [
         one
-        for one in learned.pairs.values()
-        if _tells(one) and one.pair not in carriers and one.pair[1] not in roaming
+        for one in (*learned.pairs.values(), *learned.local.values())
+        if _tells(one, min(MIN_PLACES, most)) and one.pair not in carriers and one.pair[1] not in roaming
     ]
     told: defaultdict[str, float] = defaultdict(float)
     for one in telling:
@@ -62,6 +66,6 @@ def _side(objects: ObjectSums, name: str) -> float:
     return LEAST_SIDE if size is None else max(float(np.sqrt(size[0] * size[1])), LEAST_SIDE)
 
 
-def _tells(one: LearnedPair) -> bool:
-    known = one.cells.place_count >= MIN_PLACES and float(one.cells.counts.sum()) >= MIN_SEEN
+def _tells(one: LearnedPair, places: int) -> bool:
+    known = one.cells.place_count >= places and float(one.cells.counts.sum()) >= MIN_SEEN
     return known and one.stack.gain >= MIN_GAIN and one.density.mixture is not None

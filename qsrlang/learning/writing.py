@@ -9,7 +9,7 @@ from qsrlang.language.printing.formatter import format_source
 from qsrlang.language.source import Source
 from qsrlang.learning.experience import Experience, ObjectSums
 from qsrlang.learning.fits import FittedCount, general_fits, place_fits, written_mixture
-from qsrlang.learning.learner import LearnedPair, learn
+from qsrlang.learning.learner import MIN_PLACES, LearnedPair, learn
 from qsrlang.learning.rhythm import DIRECTIONS, Rhythm, rhythm_of
 from qsrlang.learning.selection import roots, selected
 from qsrlang.learning.supports import SupportShares, support_shares
@@ -90,7 +90,8 @@ def _pair(one: LearnedPair) -> Iterator[str]:
     referent, relatum = one.pair
     seen, places = one.cells.counts.sum(), one.cells.place_count
     yield f"## {referent} as seen from {relatum}: {seen:.0f} seen at {places} places, which weigh the same;"
-    yield f"## {one.stack.gain:+.2f} nats an object at places held out, above anywhere on the support."
+    where = "at places held out" if places >= MIN_PLACES else "from one sighting there to the next"
+    yield f"## {one.stack.gain:+.2f} nats an object {where}, above anywhere on the support."
     yield from _observed(one, general_fits(one))
 
 
@@ -146,6 +147,7 @@ def _context(one: LearnedPair, conditions: str, fits: Sequence[FittedCount]) -> 
 def _fits_by_room(one: LearnedPair) -> dict[str, list[FittedCount]]:
     general = written_mixture(one.density)
     rooms = sorted((one.cells.words[number], number) for number in {*one.cells.places.tolist()})
+    rooms = [(room, number) for room, number in rooms if room]
     cells = {room: one.cells.take(one.cells.places == number) for room, number in rooms}
     return {room: place_fits(own, general) for room, own in cells.items()}
 

@@ -64,9 +64,12 @@ def test_what_holds_everywhere_is_learned_and_what_does_not_is_left_open():
     np.testing.assert_allclose(mean, (0.0, -0.3), atol=0.06)
 
 
-def test_a_pair_seen_at_too_few_places_is_not_learned():
+def test_of_a_pair_seen_at_few_places_nothing_is_known_but_what_was_seen_there():
     few = learn(sums_of(desks(MIN_PLACES - 1, 6, np.random.default_rng(0))))
     assert few.pairs == {} and len(few.core) == 0
+    mouse, mug = few.local[MOUSE], few.local[MUG]
+    assert mouse.stack.gain > 1.0 and mug.stack.gain < 0.2
+    np.testing.assert_allclose(mouse.density.mixture.moments()[0], (0.0, -0.3), atol=0.06)
 
 
 def test_held_out_densities_do_not_know_the_place():

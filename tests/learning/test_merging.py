@@ -112,6 +112,15 @@ def test_rooms_and_hours_are_told_apart_together(tmp_path):
         assert sides[0] < -0.1 and sides[1] > 0.1
 
 
+def test_a_week_in_one_room_is_learned(tmp_path):
+    path = tmp_path / "desk.qsr"
+    learn_into(path, experience_of(desks(1, 12, np.random.default_rng(3))))
+    where = qsr.load(path).where("Mouse", wrt="Keyboard").mixture
+    np.testing.assert_allclose(where.means[where.weights.argmax()], (0.0, -0.3), atol=0.06)
+    assert "from one sighting there to the next" in path.read_text()
+    assert qsr.check(path).errors == ()
+
+
 def test_a_block_takes_the_place_of_the_block_before():
     once = merged("a.", "one")
     assert merged(once, "two") == once.replace("one", "two")

@@ -83,6 +83,20 @@ def test_gaps_are_filled_as_the_schema_says():
     assert (row["confidence"], row["z"], row["support"]) == (1.0, 0.0, "")
 
 
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        ("Mug", "Mug"),
+        ("coffee mug", "coffee-mug"),
+        ("133", "place-133"),
+        ("Tisch-Größe", "Tisch-Größe"),
+        ("a. b", "a-b"),
+    ],
+)
+def test_places_and_classes_are_names_of_the_language(text, name):
+    assert sound(GOOD | {"place": text})["place"] == name
+
+
 def test_times_are_iso_8601_or_seconds():
     assert sound(GOOD | {"time": "1970-01-02T06:00:00"})["time"] == 86400.0 + 6 * 3600.0
     assert sound(GOOD | {"time": "12.5"})["time"] == 12.5
