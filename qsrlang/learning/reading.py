@@ -14,6 +14,7 @@ from qsrlang.learning.formats.tables import Rows, read_csv, read_json_lines, rea
 from qsrlang.learning.screening import Reading, screened
 from qsrlang.learning.store import ENDINGS, ObservationStore
 
+MAX_BYTES = 1_000_000_000
 Reader = Callable[[Path], Rows]
 _BY_ENDING: dict[str, Reader] = {
     ".jsonl": read_json_lines,
@@ -36,6 +37,10 @@ def read_observations(*paths: Path | str) -> Reading:
 def _rows(path: Path) -> Rows:
     if not path.is_file():
         raise FileError(path, "is no file", "name a file of observations that exists")
+    if path.stat().st_size > MAX_BYTES and path.suffix not in ENDINGS:
+        raise FileError(
+            path, f"is larger than {MAX_BYTES} bytes", "split it, and learn from one part after the other"
+        )
     if path.suffix in ENDINGS:
         with ObservationStore(path) as store:
             yield from ((f"{path.name}:{number}", row) for number, row in enumerate(store.query().rows(), 1))

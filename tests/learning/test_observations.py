@@ -186,3 +186,21 @@ def test_unitys_left_handed_frame_is_turned(tmp_path):
     assert (sink["length"], sink["width"], sink["support"]) == (0.5, 0.7, "CounterTop|2")
     assert math.isnan(apple["yaw"])
     assert len(list(read_ithor_table(path))) == 2
+
+
+HEADERS = ("scene,object,class,x,y\n", KTH, ITHOR, "")
+
+
+@given(
+    st.sampled_from(["csv", "jsonl", "xml"]),
+    st.sampled_from(HEADERS),
+    st.binary(max_size=200) | st.text('0123456789.,"\n<>{}ane-', max_size=200).map(str.encode),
+)
+def test_no_file_breaks_the_reading(tmp_path_factory, ending, header, content):
+    path = tmp_path_factory.mktemp("log") / f"log.{ending}"
+    path.write_bytes(header.encode() + content)
+    try:
+        reading = read_observations(path)
+    except FileError:
+        return
+    assert np.isfinite(reading.observations.number("x")).all()

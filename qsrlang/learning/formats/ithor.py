@@ -6,12 +6,11 @@ right-handed, and the heading of an object's +z is minus its yaw.
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Iterable
 from pathlib import Path
 
-from qsrlang.learning.formats.tables import Rows
+from qsrlang.learning.formats.tables import Rows, csv_rows
 from qsrlang.learning.observations import NOWHERE, Row
 from qsrlang.learning.screening import Unsound
 
@@ -30,17 +29,15 @@ def is_ithor_table(header: Iterable[str]) -> bool:
 
 def read_ithor_table(path: Path) -> Rows:
     """Yield the objects of every room; `support` is the narrowest receptacle: the last that is not the floor."""
-    with path.open(encoding="utf-8", newline="") as file:
-        reader = csv.DictReader(file)
-        for row in reader:
-            yield f"{path.name}:{reader.line_num}", _object(row)
+    for where, row in csv_rows(path):
+        yield where, _object(row)
 
 
 def _object(row: Row) -> Row | Unsound:
     try:
         yaw = float(row["yaw_deg"])
         sizes = {name: float(row[f"aabb_{name}"]) for name in ("cx", "cy", "cz", "sx", "sy", "sz")}
-    except (TypeError, ValueError):
+    except (KeyError, TypeError, ValueError):
         return Unsound("with cells that are no numbers")
     length, width = _box(yaw, sizes["sz"], sizes["sx"])
     return {

@@ -6,7 +6,6 @@ An annotated yaw of 0 is a thing whose front faces the person, so its heading in
 
 from __future__ import annotations
 
-import csv
 import math
 import re
 from collections.abc import Callable, Iterable
@@ -16,7 +15,7 @@ from typing import Any
 from xml.etree import ElementTree
 
 from qsrlang.errors import FileError
-from qsrlang.learning.formats.tables import Rows
+from qsrlang.learning.formats.tables import Rows, csv_rows
 from qsrlang.learning.observations import Row
 from qsrlang.learning.screening import Unsound
 
@@ -32,14 +31,11 @@ _INSTANCE = re.compile(r"_\d+$")
 def read_kth_table(path: Path) -> Rows:
     """Yield the objects of every scan, and the desk itself as one more, its centre in the middle."""
     scene = None
-    with path.open(encoding="utf-8", newline="") as file:
-        reader = csv.DictReader(file)
-        for row in reader:
-            where = f"{path.name}:{reader.line_num}"
-            if row["scene"] != scene:
-                scene = row["scene"]
-                yield where, _or_unsound(_desk, row)
-            yield where, _or_unsound(_object, row)
+    for where, row in csv_rows(path):
+        if row["scene"] != scene:
+            scene = row["scene"]
+            yield where, _or_unsound(_desk, row)
+        yield where, _or_unsound(_object, row)
 
 
 def read_kth_xml(path: Path) -> Rows:

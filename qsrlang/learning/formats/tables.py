@@ -20,7 +20,6 @@ try:
 except ImportError:  # the extra `qsrlang[parquet]` is not installed
     arrow = arrow_parquet = None
 
-MAX_BYTES = 2_000_000_000
 MAX_LINE = 100_000
 COLUMNS = ("time", "place", "scene", "object", "class", *NUMBERS[1:-1], "support", "source", "confidence")
 Rows = Iterator[tuple[str, Row | Unsound]]
@@ -28,12 +27,21 @@ Rows = Iterator[tuple[str, Row | Unsound]]
 
 def read_csv(path: Path) -> Rows:
     """Yield the rows of a CSV file with a header."""
+    for where, row in csv_rows(path):
+        uneven = None in row or None in row.values()
+        yield where, Unsound("with too few or too many cells") if uneven else _named(row)
+
+
+def csv_rows(path: Path) -> Iterator[tuple[str, dict[str, str]]]:
+    """Yield the rows of a CSV file by its header, each with its place; raises FileError where it cannot be read."""
     with path.open(encoding="utf-8", errors="replace", newline="") as file:
         reader = csv.DictReader(_lines(file))
-        for row in reader:
-            where = f"{path.name}:{reader.line_num}"
-            uneven = None in row or None in row.values()
-            yield where, Unsound("with too few or too many cells") if uneven else _named(row)
+        try:
+            for row in reader:
+                yield f"{path.name}:{reader.line_num}", row
+        except csv.Error as error:
+            problem = f"cannot be read from line {reader.line_num} on ({error})"
+            raise FileError(path, problem, "mend that line, or export the table anew") from None
 
 
 def read_json_lines(path: Path) -> Rows:
