@@ -12,8 +12,9 @@ from qsrlang.learning.cells import PairCells
 from qsrlang.learning.density import PairDensity
 from qsrlang.learning.experts import WIDE_DEVIATION
 from qsrlang.learning.learner import LearnedPair
-from qsrlang.learning.reduction import reduced
 from qsrlang.learning.rhythm import DIRECTIONS, direction_numbers
+from qsrlang.mixtures import reduction
+from qsrlang.mixtures.answers import Component
 from qsrlang.mixtures.gaussian import GaussianMixture
 
 # Gaussians for what is told precisely, and one more for all that is not.
@@ -70,6 +71,15 @@ def _rest(mixture: GaussianMixture, wide: BoolArray) -> GaussianMixture:
         return reduced(GaussianMixture(weights, mixture.means[wide], mixture.covariances[wide]), 1)
     mean, covariance = mixture.moments()
     return GaussianMixture(np.ones(1), mean[None], covariance[None] + WIDE_DEVIATION**2 * np.eye(2))
+
+
+def reduced(mixture: GaussianMixture, count: int) -> GaussianMixture:
+    """Return a mixture of at most `count` Gaussians with the same mean and covariance as a whole (Runnalls 2007)."""
+    columns = zip(mixture.weights.tolist(), mixture.means, mixture.covariances, strict=True)
+    few = reduction.reduced([Component(*one, ()) for one in columns if one[0] > 0.0], count)
+    weights = np.array([one.weight for one in few])
+    means, covariances = np.stack([one.mean for one in few]), np.stack([one.covariance for one in few])
+    return GaussianMixture(weights / weights.sum(), means, covariances)
 
 
 def mixed(parts: Sequence[tuple[float, GaussianMixture]]) -> GaussianMixture:

@@ -8,14 +8,13 @@ from qsrlang.geometry.angles import rotation
 from qsrlang.learning.cells import cells_of
 from qsrlang.learning.experience import experience_of
 from qsrlang.learning.experts import EXPERTS, HeldOut, held_out
-from qsrlang.learning.fits import fits_of, place_fits, written_mixture
+from qsrlang.learning.fits import fits_of, place_fits, reduced, written_mixture
 from qsrlang.learning.fusion import learn_fusion
 from qsrlang.learning.grids import sights_of
 from qsrlang.learning.learner import MIN_PLACES, learn
 from qsrlang.learning.observations import Observations
 from qsrlang.learning.placements import placements_of
 from qsrlang.learning.rectangles import rectangle_mass, upright_mass
-from qsrlang.learning.reduction import reduced
 from qsrlang.learning.rhythm import DIRECTIONS, direction_numbers, rhythm_of
 from qsrlang.learning.specific import PlaceLearner
 from qsrlang.learning.stacking import NOTHING, core_weights, stacked
