@@ -9,7 +9,9 @@ import argparse
 import math
 import os
 import re
+import runpy
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import matplotlib
@@ -30,6 +32,14 @@ VARIANTS = ("A", "B", "C")
 CAMERAS = ("narrow", "wide")
 MONITOR = "monitor-1 : Monitor at (0 m, 0 m) facing -90 deg"
 DESK = "desk-1 : Desk at (0 m, -0.2 m) facing -90 deg"
+SIX_PAIRS = (
+    ("Mouse", "Keyboard"),
+    ("Keyboard", "Monitor"),
+    ("Mug", "Monitor"),
+    ("Bottle", "Keyboard"),
+    ("Lamp", "Monitor"),
+    ("Headphones", "Keyboard"),
+)
 SEED = 1
 
 
@@ -83,6 +93,29 @@ def draw_supports() -> None:
     qsr.save_figure(qsr.draw_map(occupancy, supports), IMAGES / "tum-kitchen-supports.png")
 
 
+def draw_learning() -> None:
+    """Learned mixtures over where people put things on real desks, and what the first scans of a desk are worth."""
+    path = qsr.data_root() / "kth3d" / "kth3d_desks.csv"
+    benchmark = runpy.run_path(str(DOCS.parent / "benchmarks" / "bench_learning.py"))
+    seen = qsr.read_observations(path).observations
+    known = qsr.load("office/desks")
+    for referent, relatum in SIX_PAIRS:
+        points = benchmark["cases_of"](seen, referent, relatum).points
+        choice = next(one for one in known.graph.choices if (referent, relatum) in one.governs)
+        graph = replace(known.graph, choices=(choice,))
+        mixture = replace(known, graph=graph).where(referent, wrt=relatum).mixture
+        title = f"{referent} as seen from {relatum}"
+        figure = qsr.draw_mixture(mixture, frame=relatum, title=title, points=points)
+        qsr.save_figure(figure, IMAGES / f"learned-{referent.lower()}-{relatum.lower()}.png")
+    gains = benchmark["desk_gains"](seen)
+    curves = {f"{a.lower()} | {b.lower()}": list(found.values()) for (a, b), found in gains.items()}
+    curves["mean"] = np.mean(list(curves.values()), axis=0).tolist()
+    figure = qsr.draw_learning_curves(
+        benchmark["SCANS"], curves, "scans of the desk seen before", "gain [nat/object]"
+    )
+    qsr.save_figure(figure, IMAGES / "learning-curves.png")
+
+
 def tell_comparisons(scenario: str, cameras: Sequence[str | None], trials: int, arms: Sequence[str]) -> None:
     """Tables II and III, and the curves of finds over time."""
     for camera in cameras:
@@ -127,16 +160,20 @@ def main() -> None:
     """Make what the command line asks for."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--trials", type=int, default=200)
-    parser.add_argument("--only", choices=("pictures", "tables"))
+    parser.add_argument("--only", choices=("pictures", "learning", "tables"))
     chosen = parser.parse_args()
     IMAGES.mkdir(exist_ok=True)
     has_data = (qsr.data_root() / "tum_kitchen").is_dir()
+    if chosen.only == "learning":
+        draw_learning()
+        return
     if chosen.only != "tables":
         draw_mixtures()
         draw_code()
         draw_room()
         draw_search("kitchen", "qsr", 7, "kitchen-search")
         if has_data:
+            draw_learning()
             draw_supports()
             draw_search("tum-kitchen", "planes", 2, "tum-kitchen-planes")
             draw_search("tum-kitchen", "qsr", 2, "tum-kitchen-qsr")

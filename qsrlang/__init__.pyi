@@ -28,6 +28,21 @@ from .language.diagnostics import Diagnostic, Diagnostics, Edit, LanguageError
 from .language.parser import parse, parse_formula, parse_landmark, parse_place, parse_query
 from .language.printing.formatter import format_source
 from .language.printing.printer import print_document, print_query
+from .learning.differences import Change, differences
+from .learning.experience import Experience, experience_of
+from .learning.formats.tables import write_observations
+from .learning.fusion import Fusion, learn_fusion
+from .learning.learner import Learned, learn
+from .learning.merging import Lesson, learn_into
+from .learning.observations import Observations
+from .learning.reading import read_observations
+from .learning.rhythm import Rhythm, rhythm_of
+from .learning.screening import Reading
+from .learning.searches import sightings_of
+from .learning.specific import PlaceLearner
+from .learning.store import ObservationStore
+from .learning.sums import PlacementSums, sums_of
+from .learning.writing import Contexts
 from .maps.mapping import VoxelMapper
 from .maps.navigation import NavigationGrid, occupancy_from_voxels
 from .maps.occupancy import Cell, OccupancyGrid
@@ -73,6 +88,7 @@ from .planning.world import Detection, Drive, Look, World
 from .plotting.answers import draw_answer
 from .plotting.canvas import save_figure
 from .plotting.curves import draw_curves
+from .plotting.growth import draw_learning_curves
 from .plotting.maps import draw_map
 from .plotting.mixtures import draw_mixture
 from .plotting.statistics import draw_found_by_time
@@ -104,11 +120,13 @@ __all__ = [
     "BlockedPoseError",
     "Camera",
     "Cell",
+    "Change",
     "Circumstances",
     "Comparison",
     "Component",
     "Conflict",
     "Consistency",
+    "Contexts",
     "Detection",
     "Detector",
     "Diagnostic",
@@ -117,10 +135,12 @@ __all__ = [
     "Drive",
     "Edit",
     "Exact",
+    "Experience",
     "Experiment",
     "Explanation",
     "Extent",
     "FileError",
+    "Fusion",
     "Gain",
     "GaussianMixture",
     "Goal",
@@ -135,6 +155,8 @@ __all__ = [
     "LandmarkValue",
     "LanguageError",
     "Lattice",
+    "Learned",
+    "Lesson",
     "Limits",
     "Look",
     "MissingFacingError",
@@ -144,11 +166,15 @@ __all__ = [
     "NoRoomError",
     "Noise",
     "NoisyWorld",
+    "ObservationStore",
+    "Observations",
     "OccupancyGrid",
     "OctoMap",
     "Opening",
     "OutsideMapError",
+    "PlaceLearner",
     "Placement",
+    "PlacementSums",
     "Planner",
     "Pose2",
     "Probability",
@@ -159,10 +185,12 @@ __all__ = [
     "RandomPlanner",
     "RankedView",
     "RankedViews",
+    "Reading",
     "Reason",
     "RelationGraph",
     "Relaxation",
     "Repeats",
+    "Rhythm",
     "Robot",
     "Rollout",
     "Room",
@@ -196,20 +224,26 @@ __all__ = [
     "compose",
     "converse",
     "data_root",
+    "differences",
     "direction_of",
     "draw_answer",
     "draw_curves",
     "draw_found_by_time",
+    "draw_learning_curves",
     "draw_map",
     "draw_mixture",
     "draw_search_step",
     "draw_story",
     "draw_voxels",
     "entailed",
+    "experience_of",
     "find_conflicts",
     "find_supports",
     "format_source",
     "in_view",
+    "learn",
+    "learn_fusion",
+    "learn_into",
     "load",
     "load_ipython_extension",
     "load_room",
@@ -227,17 +261,22 @@ __all__ = [
     "print_query",
     "qualify",
     "rank_views",
+    "read_observations",
     "read_octomap",
     "read_ros_map",
     "relations_between",
     "relative_angle",
+    "rhythm_of",
     "save_figure",
     "scene_picture",
     "search",
     "search_world",
     "shortest_path",
+    "sightings_of",
+    "sums_of",
     "survey_room",
     "unload_ipython_extension",
     "view_values",
     "voxel_weights",
+    "write_observations",
 ]

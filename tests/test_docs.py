@@ -8,7 +8,9 @@ import sys
 import tomllib
 from pathlib import Path
 
+import numpy as np
 import pytest
+from learning.logs import desks
 
 import qsrlang as qsr
 from qsrlang.cli.main import main
@@ -19,7 +21,7 @@ ROOT = Path(__file__).parents[1]
 DOCUMENTS = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")])
 EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
 BLOCK = re.compile(r"^```([\w ]*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-NEEDS_DATA = ("tum-kitchen",)
+NEEDS_DATA = ("tum-kitchen", "kth3d_desks.csv")
 
 
 def blocks(language):
@@ -69,6 +71,7 @@ def test_commands_run(text, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO()))
     Path("desk.qsr").write_text(qsr.format_source(read_source(find_knowledge("office/desk"))))
+    qsr.write_observations(desks(6, 5, np.random.default_rng(0)), Path("log.csv"))
     targets = re.findall(r"^(\w+):", (ROOT / "Makefile").read_text(), re.MULTILINE)
     for line in text.replace("\\\n", " ").splitlines():
         words = shlex.split(line, comments=True)

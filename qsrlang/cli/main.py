@@ -18,6 +18,8 @@ VERBS = (
     "plot",
     "search",
     "compare",
+    "learn",
+    "diff",
     "lsp",
     "explain-error",
 )

@@ -1,0 +1,1 @@
+"""Files of observations, read into one schema: our own tables, and public data sets."""
