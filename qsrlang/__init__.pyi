@@ -21,6 +21,7 @@ from .experiments.statistics import Interval
 from .experiments.stories import Opening, SearchStory, open_search, search
 from .experiments.summaries import ArmSummary, Comparison
 from .experiments.trials import Trial
+from .experiments.viewing import ask_views
 from .geometry.angles import relative_angle
 from .geometry.pose import Pose2
 from .geometry.viewcone import Sector, Triangle, ViewCone
@@ -218,6 +219,7 @@ __all__ = [
     "VoxelMapper",
     "Where",
     "World",
+    "ask_views",
     "check",
     "check_text",
     "compare",

@@ -139,5 +139,5 @@ class UnansweredQueryError(QSRError):
         self.verb = verb
         super().__init__(
             f"'{verb}' is about views on a map, and knowledge alone has none; "
-            "name a place that has one, as in 'qsr ask kitchen/cups \"views Cup?\" --scenario kitchen'"
+            "name a scenario, as in 'qsr ask kitchen/cups \"views Cup?\" --scenario kitchen', or ':map kitchen'"
         )

@@ -12,16 +12,20 @@ from rich.table import Table
 import qsrlang as qsr
 
 
-def print_answer(answer: qsr.Answer, console: Console, title: str) -> None:
+def print_answer(answer: qsr.Answer | qsr.RankedViews, console: Console, title: str) -> None:
     """Print an answer: as a table, with the numbers of the statements behind each component, or as a tree."""
-    if isinstance(answer, qsr.Where):
-        _print_where(answer, console, title)
-    elif isinstance(answer, qsr.Explanation | qsr.Consistency):
-        console.print(str(answer), highlight=False, markup=False, soft_wrap=True)
-    else:
-        console.print(title, markup=False, highlight=False, soft_wrap=True)
-        console.print(table_of(answer))
-    if not isinstance(answer, qsr.Consistency) and answer.assumed:
+    match answer:
+        case qsr.Where():
+            _print_where(answer, console, title)
+        case qsr.Probability() | qsr.LandmarkRanking() | qsr.SceneSamples():
+            console.print(title, markup=False, highlight=False, soft_wrap=True)
+            console.print(table_of(answer))
+        case _:
+            console.print(str(answer), highlight=False, markup=False, soft_wrap=True)
+    if (
+        isinstance(answer, qsr.Where | qsr.Probability | qsr.SceneSamples | qsr.Explanation)
+        and answer.assumed
+    ):
         assumed = f"assumed: {'; '.join(answer.assumed)}"
         good = "" if answer.draws is None else f" (as good as {answer.draws:.0f} independent draws)"
         console.print(assumed + good, highlight=False, markup=False, soft_wrap=True)

@@ -23,11 +23,19 @@ def ask(
         int, typer.Option(min=2, help="Draws of the sampling engine, of 'prob', and under assumptions.")
     ] = 10_000,
     seed: Annotated[int, typer.Option(min=0, help="Seed of all draws.")] = 0,
+    scenario: Annotated[
+        str | None, typer.Option(help="For 'views': a scenario whose map, camera and robot they are of.")
+    ] = None,
     output: OutputFormat = Format.TEXT,
 ) -> None:
     """Ask what a .qsr file says, such as 'where Cup?'."""
     known = qsr.load(file).with_landmarks(*(landmark or ()))
-    answer = known.ask(query, viewer=viewer_pose(viewer), engine=engine, samples=samples, seed=seed)
+    seen_from = viewer_pose(viewer)
+    answer: qsr.Answer | qsr.RankedViews
+    if scenario is not None:
+        answer = qsr.ask_views(known, query, scenario, viewer=seen_from, seed=seed)
+    else:
+        answer = known.ask(query, viewer=seen_from, engine=engine, samples=samples, seed=seed)
     if output is Format.JSON:
         typer.echo(json.dumps(answer.to_json(), ensure_ascii=False, indent=2))
     else:

@@ -87,6 +87,12 @@ class KnowledgeBase:
             return known
         return replace(known, graph=self.built.under(circumstances)).with_landmarks(*self.added)
 
+    def for_question(self, question: questions.Query) -> KnowledgeBase:
+        """Return the knowledge that holds in the circumstances of a question; raises UnknownNameError for its names."""
+        known = self.under(_refined(self.circumstances, Circumstances.of(question.circumstances)))
+        check_question(question, known.graph)
+        return known
+
     def where(
         self,
         target: str,
@@ -209,8 +215,7 @@ class KnowledgeBase:
         UnknownNameError, and UnansweredQueryError for `views`, which needs a map.
         """
         question = parse_query(query)
-        known = self.under(_refined(self.circumstances, Circumstances.of(question.circumstances)))
-        check_question(question, known.graph)
+        known = self.for_question(question)
         given, rng = question.given, np.random.default_rng(seed)
         match question:
             case questions.Where(target=target, relatum=relatum):

@@ -362,7 +362,7 @@ def test_an_input_goes_on_over_lines(shell, tmp_path):
         ("observe behind", "observe behind-of"),
         ("static A. wh", "static A. where"),
         (":rel", ":reload"),
-        (":load off", ":load office/desk"),
+        (":load tum-kitchen/r", ":load tum-kitchen/relations"),
         (":load mi", ":load mine.qsr"),
         (":world weeke", ":world weekend"),
         (":world room r1", ":world room r133"),

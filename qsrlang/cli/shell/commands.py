@@ -88,6 +88,7 @@ _LISTED = (
     Command("save", "[FILE.qsr]", "write all that is known to a new file", changing.save_new),
     Command("save!", "[FILE.qsr]", "write it in the place of what the file holds", changing.save_over),
     Command("world", "[PARTS]", "room NAME, weekday, at HH:MM, viewer (x m, y m); none", looking.show_world),
+    Command("map", "[SCENARIO]", "whose map 'views' is about, kitchen for instance", looking.show_map),
     Command("graph", "[NAME]", "what relates the objects, with shares and lines", looking.show_graph),
     Command("plot", "[QUERY] [FILE.png]", "draw an answer to 'where', the last by default", looking.plot),
     Command("time", "[QUERY]", "how long a query takes", looking.time_query),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import qsrlang as qsr
@@ -32,6 +33,14 @@ def show_world(shell: Shell, argument: str) -> None:
         shell.note(f"rooms that contexts speak of: {', '.join(rooms)}")
     shell.notes.print(landmark_table(graph) if graph.landmarks else "no landmarks")
     shell.notes.print(class_table(graph) if graph.classes else "no classes")
+
+
+def show_map(shell: Shell, argument: str) -> None:
+    """Show the scenario whose map `views` is about, or take another."""
+    if argument:
+        qsr.load_scenario(argument)
+        shell.session = replace(shell.session, scenario=argument)
+    shell.note(shell.session.scenario or "no map; name a scenario, as in ':map kitchen'")
 
 
 def plot(shell: Shell, argument: str) -> None:

@@ -79,6 +79,7 @@ class Session:
     inputs: int = 0
     circumstances: Circumstances = ANYWHERE
     viewer: Pose2 | None = None
+    scenario: str | None = None
 
     @classmethod
     def begin(cls, knowledge: Knowledge | None = None) -> Session:
@@ -114,8 +115,10 @@ class Session:
         past = (*self.past, self.knowledge)[-MAX_STEPS_BACK:]
         return replace(self, knowledge=knowledge, built=built, past=past, future=())
 
-    def ask(self, query: str) -> qsr.Answer:
-        """Answer a query; raises QSRError."""
+    def ask(self, query: str) -> qsr.Answer | qsr.RankedViews:
+        """Answer a query, about views on the map of the session's scenario; raises QSRError."""
+        if self.scenario is not None and query.lstrip().startswith("views"):
+            return qsr.ask_views(self.known, query, self.scenario, viewer=self.viewer)
         return self.known.ask(query, viewer=self.viewer)
 
     def undo(self, count: int = 1) -> Session:
