@@ -110,9 +110,9 @@ def draw_learning() -> None:
     gains = benchmark["desk_gains"](seen)
     curves = {f"{a.lower()} | {b.lower()}": list(found.values()) for (a, b), found in gains.items()}
     curves["mean"] = np.mean(list(curves.values()), axis=0).tolist()
-    figure = qsr.draw_learning_curves(
-        benchmark["SCANS"], curves, "scans of the desk seen before", "gain [nat/object]"
-    )
+    lines = {name: (benchmark["SCANS"], values) for name, values in curves.items()}
+    least = min(0.0, *(min(values) for values in curves.values()))
+    figure = qsr.draw_curves(lines, "scans of the desk seen before", "gain [nat/object]", lowest=least)
     qsr.save_figure(figure, IMAGES / "learning-curves.png")
 
 

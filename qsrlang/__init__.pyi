@@ -89,7 +89,6 @@ from .planning.world import Detection, Drive, Look, World
 from .plotting.answers import draw_answer
 from .plotting.canvas import save_figure
 from .plotting.curves import draw_curves
-from .plotting.growth import draw_learning_curves
 from .plotting.maps import draw_map
 from .plotting.mixtures import draw_mixture
 from .plotting.statistics import draw_found_by_time
@@ -231,7 +230,6 @@ __all__ = [
     "draw_answer",
     "draw_curves",
     "draw_found_by_time",
-    "draw_learning_curves",
     "draw_map",
     "draw_mixture",
     "draw_search_step",
