@@ -20,6 +20,7 @@ from pathlib import Path
 import numpy as np
 from sklearn.exceptions import ConvergenceWarning
 from sklearn.mixture import BayesianGaussianMixture, GaussianMixture
+from sklearn.neighbors import KernelDensity
 
 import qsrlang as qsr
 from qsrlang.learning.cells import cells_of
@@ -27,7 +28,7 @@ from qsrlang.learning.experience import experience_of
 from qsrlang.learning.fits import written_mixture
 from qsrlang.learning.fusion import learn_fusion
 from qsrlang.learning.grids import sights_of
-from qsrlang.learning.learner import learn
+from qsrlang.learning.learner import LearnedPair, learn
 from qsrlang.learning.observations import NUMBERS, TEXTS, Observations
 from qsrlang.learning.placements import placements_of
 from qsrlang.learning.reading import read_observations
@@ -102,17 +103,21 @@ def cases_of(seen: Observations, referent: str, relatum: str) -> Cases:
 
 def gaussian_mixture(peer: Callable[..., object], count: int) -> Callable[[np.ndarray], Fitted]:
     def fit(points: np.ndarray) -> Fitted:
-        model = peer(n_components=count, random_state=0, max_iter=500).fit(points)
+        parts = min(count, len(points))
+        model = peer(n_components=parts, random_state=0, max_iter=500).fit(points)
         return model.weights_, model.means_, model.covariances_
 
     return fit
 
 
 def kernel_density(bandwidth: float) -> Callable[[np.ndarray], Fitted]:
-    """sklearn's KernelDensity as the mixture that it is; its score_samples is checked to agree in `check_peers`."""
+    """sklearn's KernelDensity as the mixture that it is, with which its score_samples agrees (asserted)."""
 
     def fit(points: np.ndarray) -> Fitted:
         covariances = np.broadcast_to(bandwidth**2 * np.eye(2), (len(points), 2, 2))
+        logs = KernelDensity(bandwidth=bandwidth).fit(points).score_samples(points[:1])
+        squares = ((points - points[0]) ** 2).sum(axis=1) / bandwidth**2
+        assert np.isclose(np.exp(logs[0]), np.exp(-0.5 * squares).mean() / (2.0 * np.pi * bandwidth**2))
         return np.full(len(points), 1.0 / len(points)), points, covariances
 
     return fit
@@ -156,7 +161,7 @@ def pairs(seen: Observations) -> None:
             out = one.desks == desk
             if not out.any():
                 continue
-            test, known = one.take(out), learned.pairs[pair]
+            test, known = one.take(out), learned.pairs.get(pair)
             for name, fit in PEERS.items():
                 scores[name][pair][out] = test.score(peer_density(fit(one.take(~out).offsets), test))
             for name, density in OURS.items():
@@ -164,13 +169,16 @@ def pairs(seen: Observations) -> None:
     print_table(cases, scores)
 
 
-def whole(known: object, test: Cases) -> np.ndarray:
+def whole(known: LearnedPair | None, test: Cases) -> np.ndarray:
+    """The learned density; of a pair that too few of the other desks have, nothing is known."""
+    if known is None:
+        return test.uniform
     return known.density.pdf(test.points, test.low, test.high, test.turns)
 
 
-def as_written(known: object, test: Cases) -> np.ndarray:
+def as_written(known: LearnedPair | None, test: Cases) -> np.ndarray:
     """What a .qsr file says of it: at most five Gaussians, cut to the desk."""
-    if known.density.mixture is None:
+    if known is None or known.density.mixture is None:
         return test.uniform
     mixture = written_mixture(known.density)
     cos, sin = np.cos(test.turns), np.sin(test.turns)
@@ -274,8 +282,9 @@ def area(seen: Observations) -> None:
             name = hand_names.get(pair[0], pair[0])
             known = name in hand.classes
             by_hand = hand.where(name, wrt=pair[1]).mixture if known else None
-            own = learned.pairs[pair].density.mixture
-            written = None if own is None else written_mixture(learned.pairs[pair].density)
+            own = learned.pairs.get(pair)
+            is_told = own is not None and own.density.mixture is not None
+            written = written_mixture(own.density) if is_told else None
             for what, mixture in (("by hand (office/desk)", by_hand), ("learned, as written", written)):
                 part = float(searched(mixture, one).mean())
                 found.setdefault(what, {}).setdefault(pair, []).append(part)
