@@ -12,6 +12,7 @@ from qsrlang.learning.experience import experience_of
 from qsrlang.learning.merging import Lesson, learn_into
 from qsrlang.learning.reading import read_observations
 from qsrlang.learning.screening import Reading
+from qsrlang.learning.selection import MIN_SEEN
 from qsrlang.learning.writing import Contexts
 
 CONTEXTS = ("room", "time")

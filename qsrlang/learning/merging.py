@@ -55,7 +55,7 @@ def learn_into(file: Path | str, new: Experience, by: Contexts = GENERAL, keep_s
     kept = experience_bytes(experience) if keep_sums else None
     name = None if kept is None else f"{path.stem}.{hashlib.sha256(kept).hexdigest()[:12]}.sums"
     body = learned_text(experience, _declared(before), by)
-    text = merged(before.text, "\n".join([*_provenance(experience, name), "", body]))
+    text = merged(before.text, "\n".join([*_provenance(experience, name), *(["", body] if body else [])]))
     raise_errors(check_text(text, str(path)))
     if kept is not None and name is not None:
         write_whole(path.with_name(name), kept)

@@ -36,3 +36,11 @@ def test_contexts_and_files_that_make_no_sense_are_told(qsr_command, tmp_path, m
     code, _, err = qsr_command("learn", "none.csv", "--into", "desk.qsr")
     assert code == 2 and "is no file" in err
     assert not (tmp_path / "desk.qsr").exists()
+
+
+def test_a_log_that_tells_too_little_says_so(qsr_command, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    write_observations(desks(1, 2, np.random.default_rng(0)), tmp_path / "log.jsonl")
+    code, out, _ = qsr_command("learn", "log.jsonl", "--into", "desk.qsr")
+    assert code == 0 and "too little yet" in out
+    assert qsr_command("check", "desk.qsr")[0] == 0
