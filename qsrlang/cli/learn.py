@@ -65,6 +65,7 @@ def _tell(lesson: Lesson) -> None:
     counts = lesson.text.count("\nobserve ") + lesson.text.count("\n    observe ")
     beliefs = lesson.text.count("\nbelieve ")
     total = sum(lesson.experience.sources.values())
-    typer.echo(
-        f"{lesson.path}: {counts} counts and {beliefs} beliefs in it now, from {total} sightings at {places} places"
-    )
+    said = f"{counts} counts and {beliefs} beliefs in it now"
+    typer.echo(f"{lesson.path}: {said}, learned from {total} sightings at {places} places")
+    if counts + beliefs == 0:
+        typer.echo(f"too little yet: a pair is told once it was seen {MIN_SEEN} times and tells something")
