@@ -24,6 +24,7 @@ import numpy as np
 import qsrlang as qsr
 from qsrlang.relations.graph import AtomicRelation, Constraint, RelationGraph
 
+sys.path.append(str(Path(__file__).parent.parent / "tests"))
 sys.path.append(str(Path(__file__).parent.parent / "tests" / "oracle"))
 
 from comparing_engines import Gap, gap, judge

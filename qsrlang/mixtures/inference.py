@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,7 +17,7 @@ from qsrlang.mixtures.reduction import MAX_COMPONENTS
 from qsrlang.mixtures.sampling import sampled_worlds
 from qsrlang.mixtures.solving.weighing import solve_worlds
 from qsrlang.mixtures.weighed import Weighed, answer_of
-from qsrlang.mixtures.worlds.chains import broken_chains, chain_starts
+from qsrlang.mixtures.worlds.chains import broken_chains, chain_starts, circle_of
 from qsrlang.mixtures.worlds.enumeration import MAX_WORLDS
 from qsrlang.relations.graph import Landmark, RelationGraph
 
@@ -71,16 +71,29 @@ def alone_with(graph: RelationGraph, relatum: str) -> RelationGraph:
 
 
 def rooted(graph: RelationGraph, names: Sequence[str]) -> RelationGraph:
-    """Return the graph; where no landmark is known, with the one class at the origin that all names hang on.
+    """Return the graph; where no chain of any name comes to a landmark, with the one class at the origin that all of
+    them hang on.
 
-    Raises UnreachedTargetError where they hang on several.
+    Raises UnreachedTargetError where they hang on several, or their chains run in circles.
     """
-    if graph.landmarks:
-        return graph
     starts = dict.fromkeys(start for name in names for start in chain_starts(graph, name) or (name,))
+    if any(graph.instances_of(start) for start in starts):
+        return graph
     if len(starts) != 1:
-        raise UnreachedTargetError(" and ".join(names), [f"{start} has no landmark" for start in starts])
+        raise UnreachedTargetError(" and ".join(names), _endings(graph, starts))
     return alone_with(graph, *starts)
+
+
+def _endings(graph: RelationGraph, starts: Iterable[str]) -> Iterable[str]:
+    """Return a sentence on each of some names that have no landmark, and one on each circle that they run in."""
+    found: dict[frozenset[str], str] = {}
+    for start in starts:
+        circle = circle_of(graph, start)
+        said = (
+            f"{' - '.join(circle)} is a circle without a landmark" if circle else f"{start} has no landmark"
+        )
+        found.setdefault(frozenset(circle or (start,)), said)
+    return found.values()
 
 
 def in_frame(

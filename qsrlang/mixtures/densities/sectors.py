@@ -6,9 +6,10 @@ quarters); one that excludes none, within the central 95 % of its angle.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import TypeAlias
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from qsrlang.geometry.angles import TURN, wrap, wrap_positive
 from qsrlang.language.syntax import Density, Normal, Uniform
 from qsrlang.relations.calculus import Relation
 
+Part: TypeAlias = tuple[FloatArray, FloatArray]
 CENTRAL_95 = 1.959963984540054
 _GRID = 1440
 _HALVINGS = 48
@@ -33,14 +35,25 @@ class Arcs:
         inside = [wrap_positive(angles - start) <= width for start, width in self.arcs]
         return np.asarray(np.logical_or.reduce(inside or [np.zeros(np.shape(angles), dtype=bool)]))
 
-    def cover(self, angles: FloatArray, cell: float) -> FloatArray:
-        """Return which share of a cell about each of the angles (...) lies in the arcs: (...,)."""
-        covered = np.zeros(np.shape(angles))
-        for start, width in self.arcs:
-            off = wrap(angles - (start + 0.5 * width))
-            inside = np.minimum(off + 0.5 * cell, 0.5 * width) - np.maximum(off - 0.5 * cell, -0.5 * width)
-            covered += np.maximum(inside, 0.0) / cell if width < TURN else 1.0
-        return np.minimum(covered, 1.0)
+    def parts(self, angles: FloatArray, cell: float) -> tuple[Part, ...]:
+        """Return, of each arc, from where to where it covers a cell about each of the angles (...): past the angle."""
+        half = np.full(np.shape(angles), 0.5 * cell)
+        return tuple(
+            (-half, half) if width >= TURN else _part(wrap(angles - start - 0.5 * width), half, 0.5 * width)
+            for start, width in self.arcs
+        )
+
+
+def covered(parts: Iterable[Part], cell: float, shape: tuple[int, ...]) -> FloatArray:
+    """Return which share (...) of cells lies in parts of them that do not overlap."""
+    shares = np.zeros(shape)
+    for low, high in parts:
+        shares += np.maximum(high - low, 0.0) / cell
+    return np.minimum(shares, 1.0)
+
+
+def _part(off: FloatArray, half: FloatArray, reach: float) -> Part:
+    return np.maximum(-half, -reach - off), np.minimum(half, reach - off)
 
 
 def arcs_of(relation: Relation, relations: Mapping[str, Relation]) -> Arcs:

@@ -17,7 +17,7 @@ from qsrlang.geometry.angles import wrap
 from qsrlang.language.syntax import Dimension, Uniform
 from qsrlang.mixtures.densities.conditional import Conditional, EitherConditional, PolarConditional
 from qsrlang.mixtures.densities.density import Rays
-from qsrlang.mixtures.densities.sectors import Arcs, arcs_of
+from qsrlang.mixtures.densities.sectors import Arcs, Part, arcs_of, covered
 from qsrlang.mixtures.densities.stance import Stance
 from qsrlang.relations.calculus import Relation
 
@@ -30,24 +30,30 @@ class Window:
     relation: Relation
     arcs: Arcs
 
-    def cover(self, rays: Rays, states: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return, along rays (P, N) from states (P, n), the share of each cell inside, and from where to where."""
-        stance = self.polar.stance(states)
-        angles = self.polar.density.hands[0] * (rays.directions - stance.axes[:, [0]])
+    def parts(self, rays: Rays, states: FloatArray) -> tuple[tuple[Part, ...], FloatArray, FloatArray]:
+        """Return the parts inside of the cells about rays (P, N), from states (P, n), and from where to where along."""
+        stance, hand = self.polar.stance(states), self.polar.density.hands[0]
+        found = self.arcs.parts(hand * (rays.directions - stance.axes[:, [0]]), rays.cell)
         low, high = _bounds(self.polar, self.relation, stance, rays.directions)
-        return self.arcs.cover(angles, rays.cell), low, high
+        return tuple(part if hand > 0.0 else (-part[1], -part[0]) for part in found), low, high
 
 
 def share_inside(windows: Sequence[Window], rays: Rays, states: FloatArray) -> FloatArray:
     """Return which share (P,) of the mass along rays (P, N), from states (P, n), lies inside of all windows."""
-    share, low, high = np.ones_like(rays.weights), rays.low, rays.high
+    shape, low, high = np.shape(rays.weights), rays.low, rays.high
+    parts: list[Part] = [(np.full(shape, -0.5 * rays.cell), np.full(shape, 0.5 * rays.cell))]
     for window in windows:
-        cover, least, greatest = window.cover(rays, states)
-        share, low, high = np.minimum(share, cover), np.maximum(low, least), np.minimum(high, greatest)
+        inside, least, greatest = window.parts(rays, states)
+        parts = [_both(one, other) for one in parts for other in inside]
+        low, high = np.maximum(low, least), np.minimum(high, greatest)
     length = rays.high - rays.low
     with np.errstate(invalid="ignore", divide="ignore"):
         along = np.where(length > 0.0, np.clip((high - low) / length, 0.0, 1.0), high >= low)
-    return np.asarray((rays.weights * share * along).sum(axis=1))
+    return np.asarray((rays.weights * covered(parts, rays.cell, shape) * along).sum(axis=1))
+
+
+def _both(one: Part, other: Part) -> Part:
+    return np.maximum(one[0], other[0]), np.minimum(one[1], other[1])
 
 
 def holds_at(

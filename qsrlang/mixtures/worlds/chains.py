@@ -36,14 +36,38 @@ def chain_starts(graph: RelationGraph, target: str) -> tuple[str, ...]:
 
 
 def broken_chains(graph: RelationGraph, target: str) -> tuple[str, ...]:
-    """Return, for each thing a target is placed by, a sentence on where its chains end without a landmark."""
+    """Return, for each thing a target is placed by, a sentence on where its chains end, or run in a circle, without a
+    landmark.
+    """
     chains = []
     for relatum in placed_by(graph, target):
-        starts = chain_starts(graph, relatum) or (graph.class_of(relatum),)
+        starts = chain_starts(graph, relatum) or _own_start(graph, relatum)
         ends = [name for name in starts if not graph.instances_of(name)]
+        circle = circle_of(graph, target, relatum)
         if ends:
             chains.append(f"{target} - {relatum} ends at {', '.join(ends)}, which has no landmark")
-    return tuple(chains)
+        elif circle:
+            chains.append(f"{' - '.join(circle)} is a circle without a landmark")
+    return tuple(dict.fromkeys(chains))
+
+
+def _own_start(graph: RelationGraph, name: str) -> tuple[str, ...]:
+    return () if placed_by(graph, name) else (graph.class_of(name),)
+
+
+def circle_of(graph: RelationGraph, *way: str) -> tuple[str, ...]:
+    """Return the first circle that chains over a way of names come to, back to where it starts; else nothing."""
+    *before, last = way
+    waiting, seen = [(*before, last)], {last}
+    while waiting:
+        chain = waiting.pop(0)
+        for name in () if graph.instances_of(chain[-1]) else placed_by(graph, chain[-1]):
+            if name in chain:
+                return (*chain[chain.index(name) :], name)
+            if name not in seen:
+                seen.add(name)
+                waiting.append((*chain, name))
+    return ()
 
 
 def needed_for(names: Collection[str], constraints: Iterable[Constraint]) -> frozenset[str]:
