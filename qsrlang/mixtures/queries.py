@@ -242,7 +242,7 @@ class KnowledgeBase:
     def _placed(
         self, graph: RelationGraph, target: str, wrt: str | None, given: str | Formula | None, how: Manner
     ) -> Placed:
-        for name in filter(None, (target, wrt)):
+        for name in (target,) if wrt is None else (target, wrt):
             check_object(name, self.graph)
         conditions = conditions_on(graph, (target,), self._formula(given))
         if conditions:

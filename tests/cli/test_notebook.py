@@ -123,6 +123,24 @@ def test_a_probability_is_shown_with_its_error(shell):
     assert ">0.8499</td>" in shown
 
 
+@pytest.mark.parametrize(
+    ("query", "words"),
+    [
+        ("explain Cup", ("where Cup", "0.850", "observe 85 × right-of(Cup, Keyboard)")),
+        ("explain right-of(Cup, Keyboard)", ("holds in", "observe 85 × right-of(Cup, Keyboard)")),
+        ("landmarks Bottle", ("<table", ">Cup</td>", ">Keyboard</td>")),
+        ("sample Bottle 20", ("<table", ">Bottle</td>", "20 scenes")),
+        ("check", ("consistent",)),
+    ],
+)
+def test_every_other_answer_is_shown_too(shell, query, words):
+    run(shell, f"%%qsr desk\n{KNOWN}")
+    shown = html(shell, run(shell, f"%qsr {query}?"))
+    for word in words:
+        assert word in shown
+    assert "object at 0x" not in shown
+
+
 def test_a_search_is_shown_step_by_step(shell):
     story = qsr.search("kitchen", planner="qsr", seed=1)
     shown = html(shell, story)
