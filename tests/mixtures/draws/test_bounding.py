@@ -1,10 +1,10 @@
-"""Draws inside of wedges, beside draws of everything of which most is thrown away."""
+"""Draws inside of bounds, beside draws of everything of which most is thrown away."""
 
 import numpy as np
 import pytest
 
 import qsrlang as qsr
-from qsrlang.mixtures.draws import conditioning, wedges
+from qsrlang.mixtures.draws import bounding, conditioning
 from qsrlang.mixtures.draws.conditions import conditions_on
 from qsrlang.mixtures.worlds.enumeration import enumerate_worlds
 from qsrlang.mixtures.worlds.plans import plan_world
@@ -22,13 +22,14 @@ GIVEN = {
     "a circle": "left-of(A, B) ∧ behind-of(B, C) ∧ left-of(A, C)",
     "by its own left": "left-of(A, M) wrt intrinsic ∧ right-of(B, A) wrt absolute",
     "with a distance": "left-of(A, M) ∧ close-to(A, M)",
+    "near each other": "close-to(A, B) ∧ close-to(C, A)",
     "not": "¬left-of(A, M) ∧ right-of(A, B)",
 }
 
 
 @pytest.mark.parametrize("name", GIVEN)
 @pytest.mark.parametrize("viewer", [None, qsr.Pose2(-1.0, 0.5)])
-def test_wedges_give_what_rejection_gives(name, viewer, monkeypatch):
+def test_bounds_give_what_rejection_gives(name, viewer, monkeypatch):
     """Means of every object within 5 standard errors of those of some thousand draws."""
     known = qsr.parse_knowledge(TABLE)
 
@@ -39,7 +40,7 @@ def test_wedges_give_what_rejection_gives(name, viewer, monkeypatch):
         ]
 
     inside = means()
-    monkeypatch.setattr(conditioning, "wedges_of", lambda graph, world, plan, parts, seen: ({}, parts))
+    monkeypatch.setattr(conditioning, "bounds_of", lambda graph, world, plan, parts, seen: ({}, parts))
     for one, other in zip(inside, means(), strict=True):
         (mean, covariance), (expected, spread) = one.mixture.moments(), other.mixture.moments()
         error = np.sqrt(np.diag(spread) * (1.0 / one.draws + 1.0 / other.draws))
@@ -50,7 +51,7 @@ def test_wedges_give_what_rejection_gives(name, viewer, monkeypatch):
 
 def planned(given):
     graph = qsr.parse_knowledge(TABLE).graph
-    conditions = wedges.conjuncts(conditions_on(graph, ("A", "B", "C"), qsr.parse_formula(given)))
+    conditions = bounding.conjuncts(conditions_on(graph, ("A", "B", "C"), qsr.parse_formula(given)))
     (world,) = enumerate_worlds(graph, "A", "B", "C", "M")
     plan = plan_world(graph, world, "A", "B", "C", "M")
     return graph, world, plan, conditions
@@ -59,7 +60,7 @@ def planned(given):
 @pytest.mark.parametrize("name", GIVEN)
 def test_plans_in_another_order_place_the_same_things(name):
     graph, world, plan, conditions = planned(GIVEN[name])
-    ordered = wedges.tightest_first(graph, world, plan, conditions)
+    ordered = bounding.tightest_first(graph, world, plan, conditions)
     assert set(ordered.steps) == set(plan.steps)
     assert ordered.layout is plan.layout
     if name == "one side":
@@ -74,11 +75,11 @@ def test_what_is_no_wedge_remains_a_condition():
         ("a circle", 3, 0),
     ):
         graph, world, plan, conditions = planned(GIVEN[name])
-        found, rest = wedges.wedges_of(graph, world, plan, conditions, None)
+        found, rest = bounding.bounds_of(graph, world, plan, conditions, None)
         assert (sum(map(len, found.values())), len(rest)) == (inside, remaining)
 
 
 def test_a_conjunction_falls_into_its_parts_only_where_it_holds_for_sure():
     text = TABLE + "require left-of(A, M) ∧ left-of(B, M). require 0.7 :: left-of(A, M) ∧ left-of(C, M)."
-    found = wedges.conjuncts(conditions_on(qsr.parse_knowledge(text).graph, ("A",), None))
+    found = bounding.conjuncts(conditions_on(qsr.parse_knowledge(text).graph, ("A",), None))
     assert sorted(one.share is None for one in found) == [False, True, True]
