@@ -22,6 +22,7 @@ def print_answer(answer: qsr.Answer | qsr.RankedViews, console: Console, title: 
             console.print(table_of(answer))
         case _:
             console.print(str(answer), highlight=False, markup=False, soft_wrap=True)
+    _print_axes(answer, console)
     if (
         isinstance(answer, qsr.Where | qsr.Probability | qsr.SceneSamples | qsr.Explanation)
         and answer.assumed
@@ -49,7 +50,7 @@ def title_of(query: str) -> str:
 
 def probability_table(answer: qsr.Probability) -> Table:
     """Return a probability and how it was found as a table."""
-    error = f"{answer.standard_error:.4f}" if answer.method == "draws" else "none"
+    error = f"{answer.standard_error:.1g}" if answer.method == "draws" else "none"
     rows = [(f"{answer.value:.4f}", error, answer.method)]
     return _table(("probability", "standard error", "found by"), rows, caption=_dropped(answer.dropped))
 
@@ -104,6 +105,14 @@ def _print_where(answer: qsr.Where, console: Console, title: str) -> None:
     console.print(frame_line(answer), highlight=False, soft_wrap=True)
 
 
+def _print_axes(answer: qsr.Answer | qsr.RankedViews, console: Console) -> None:
+    """Print the frame of an answer that does not tell it, or, where that is not the map's, how its axes lie."""
+    told = answer.answer if isinstance(answer, qsr.Explanation) else answer
+    is_tree = told is not answer and isinstance(told, qsr.Where) and told.frame != "map"
+    if isinstance(told, qsr.SceneSamples) or is_tree:
+        console.print(frame_line(told), highlight=False, soft_wrap=True)
+
+
 def answer_table(answer: qsr.Where, title: str) -> Table:
     """Return an answer as a table; its last column names statements by their numbers in `reasons`."""
     statements = reasons(answer)
@@ -129,12 +138,14 @@ def reasons(answer: qsr.Where) -> list[str]:
     return list(dict.fromkeys(one for component in answer.components for one in component.statements))
 
 
-def frame_line(answer: qsr.Where) -> str:
+def frame_line(answer: qsr.Where | qsr.SceneSamples) -> str:
     """Return the frame of an answer, and what is left to places that no statement names."""
     if answer.frame == "map":
         frame = "frame: map"
     else:
         frame = f"frame: {answer.frame} at the origin, x away from the viewer, y to its left (no landmark is used)"
+    if isinstance(answer, qsr.SceneSamples):
+        return frame
     rest = f"; elsewhere: {answer.elsewhere:.3f}" if answer.elsewhere > 0.0 else ""
     left_out = _dropped(answer.dropped)
     return f"{frame}{rest}" + (f"; {left_out}" if left_out else "")
