@@ -81,7 +81,7 @@ def scenes_table(answer: qsr.SceneSamples) -> Table:
         )
         for name, share, mean, deviation in answer.summary()
     ]
-    caption = f"{len(answer)} scenes of {answer.drawn} drawn; --format json gives each of them"
+    caption = f"{len(answer)} scene{'s' * (len(answer) != 1)} of {answer.drawn} drawn; --format json gives each of them"
     return _table(("thing", "in scenes", "x [m]", "y [m]"), rows, caption=caption)
 
 

@@ -69,7 +69,10 @@ class SceneSamples:
             yield name, len(there) / len(self), *spread
 
     def __str__(self) -> str:
-        rows = [f"{len(self)} scenes of {len(self.names)} things, {self.drawn} drawn, frame: {self.frame}"]
+        scenes, things = (
+            f"{n} {what}{'s' * (n != 1)}" for n, what in ((len(self), "scene"), (len(self.names), "thing"))
+        )
+        rows = [f"{scenes} of {things}, {self.drawn} drawn, frame: {self.frame}"]
         for name, share, mean, (dx, dy) in self.summary():
             x, y = mean.round(3) + 0.0
             rest = f", in {share:.1%} of them" if share < 1.0 else ""
