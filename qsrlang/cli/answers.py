@@ -107,10 +107,13 @@ def _print_where(answer: qsr.Where, console: Console, title: str) -> None:
 
 def _print_axes(answer: qsr.Answer | qsr.RankedViews, console: Console) -> None:
     """Print the frame of an answer that does not tell it, or, where that is not the map's, how its axes lie."""
-    told = answer.answer if isinstance(answer, qsr.Explanation) else answer
-    is_tree = told is not answer and isinstance(told, qsr.Where) and told.frame != "map"
-    if isinstance(told, qsr.SceneSamples) or is_tree:
-        console.print(frame_line(told), highlight=False, soft_wrap=True)
+    match answer:
+        case qsr.SceneSamples() as told:
+            console.print(frame_line(told), highlight=False, soft_wrap=True)
+        case qsr.Explanation(answer=qsr.Where() as told) if told.frame != "map":
+            console.print(frame_line(told), highlight=False, soft_wrap=True)
+        case _:
+            pass
 
 
 def answer_table(answer: qsr.Where, title: str) -> Table:
