@@ -16,12 +16,16 @@ from pathlib import Path
 
 import matplotlib
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.image import imsave
+from matplotlib.patches import Ellipse, Rectangle
 from pygments import highlight
 from pygments.formatters.img import ImageFormatter
 
 import qsrlang as qsr
 from qsrlang.editor.highlighting import DarkStyle, QSRLexer
+from qsrlang.plotting import style
+from qsrlang.plotting.canvas import new_figure
 from qsrlang.resources import resource_path
 
 DOCS = Path(__file__).parent
@@ -41,6 +45,17 @@ SIX_PAIRS = (
     ("Headphones", "Keyboard"),
 )
 SEED = 1
+TWO_RELATA = """
+surface Desk { size: 160 cm × 80 cm, height: 75 cm }.
+static  Monitor { size: 55 cm × 20 cm, front: yes, on: Desk }.
+static  Lamp { size: 15 cm × 15 cm, front: yes, on: Desk }.
+dynamic Cup { on: Desk }.
+landmark desk-1 : Desk at (0 m, 0 m) facing -90 deg.
+landmark monitor-1 : Monitor at (-15 cm, 25 cm) facing -90 deg.
+landmark lamp-1 : Lamp at (62 cm, 25 cm) facing -90 deg.
+"""
+BY_MONITOR = "believe 60 % :: in-front-of(Cup, Monitor) | 40 % :: right-of(Cup, Monitor)."
+BY_LAMP = "believe 70 % :: left-of(Cup, Lamp) | 30 % :: in-front-of(Cup, Lamp)."
 
 
 def draw_mixtures() -> None:
@@ -51,6 +66,73 @@ def draw_mixtures() -> None:
         qsr.save_figure(qsr.draw_answer(answer, known), IMAGES / f"cup-wrt-{name.lower()}.png")
     placed = known.with_landmarks(MONITOR, DESK)
     qsr.save_figure(qsr.draw_answer(placed.where("Cup"), placed), IMAGES / "cup-on-desk.png")
+
+
+def draw_inference() -> None:
+    """What each statement says of a cup alone, and the worlds of both with a cloud of true draws."""
+    figure = new_figure(9.6, 3.1)
+    alone, both = (figure.add_axes((left, 0.14, 0.43, 0.79)) for left in (0.06, 0.56))
+    known = qsr.parse_knowledge(TWO_RELATA + BY_MONITOR + BY_LAMP)
+    for axes, title in ((alone, "each statement alone"), (both, "both together: weight = share × evidence")):
+        draw_desk(axes, known, title)
+    for text, colour, places in (
+        (BY_MONITOR, style.PARTS[0], ((-0.42, -0.5), (0.5, 0.515))),
+        (BY_LAMP, style.PARTS[5], ((-0.42, 0.515), (0.5, -0.5))),
+    ):
+        parts = qsr.parse_knowledge(TWO_RELATA + text).where("Cup").components
+        for part, place in zip(parts, places, strict=True):
+            draw_gaussian(alone, part, colour, f"{100 * part.weight:.0f} % {relations_of(part)}", place)
+    scenes = known.sample("Cup", 4000, rng=np.random.default_rng(SEED))
+    x, y = scenes.positions[:, scenes.names.index("Cup")].T
+    both.plot(x, y, ".", color=style.MUTED, ms=1.5, alpha=0.45, mew=0.0, zorder=3.0)
+    for proof, part in zip(known.explain("Cup").proofs, known.where("Cup").components, strict=True):
+        (x, y), high = part.mean, 2.0 * math.sqrt(part.covariance[1, 1]) + 0.05
+        place = 1.07 * x, y + math.copysign(high, y - 0.2)
+        draw_gaussian(both, part, style.BELIEF, evidence_of(proof), place)
+    qsr.save_figure(figure, IMAGES / "inference.png")
+
+
+def draw_desk(axes: Axes, known: qsr.KnowledgeBase, title: str) -> None:
+    """Draw a desk from above with the boxes and names of what stands on it."""
+    axes.set(xlim=(-0.9, 0.9), ylim=(-0.56, 0.56), aspect="equal")
+    style.dress(axes)
+    style.label_axes(axes, "x on the map [m]", "y on the map [m]")
+    style.write_caption(axes, [title])
+    for mark in known.landmarks:
+        kind = known.graph.classes[mark.kind]
+        corner = mark.x - 0.5 * kind.width, mark.y - 0.5 * kind.depth
+        face = "none" if kind.is_surface else "#dddddd"
+        box = Rectangle(corner, kind.width, kind.depth, facecolor=face, linewidth=1.0, zorder=2.0)
+        box.set_edgecolor(style.SUPPORT)
+        axes.add_patch(box)
+        if not kind.is_surface:
+            axes.text(mark.x, mark.y, mark.kind, ha="center", va="center", zorder=7.0, **style.text())
+
+
+def draw_gaussian(
+    axes: Axes, part: qsr.Component, colour: str, text: str, place: tuple[float, float]
+) -> None:
+    """Draw a component's ellipses of one and two deviations, and a text at a place."""
+    (x, y), (major, minor, angle) = part.mean, part.ellipse
+    for sigmas, dashes in ((1.0, "solid"), (2.0, (0.0, (4.0, 2.5)))):
+        size = 2.0 * sigmas * major, 2.0 * sigmas * minor
+        line = Ellipse((x, y), *size, angle=math.degrees(angle), fill=False, linewidth=1.3)
+        line.set(edgecolor=colour, linestyle=dashes, zorder=5.0)
+        axes.add_patch(line)
+    axes.plot(x, y, "+", color=colour, ms=6.0, zorder=6.0)
+    label = axes.text(*place, text, ha="center", va="center", color=colour, zorder=8.0, **style.text())
+    label.set_path_effects(style.halo())
+
+
+def evidence_of(proof: qsr.Proof) -> str:
+    """Return a world's weight as the product that it is."""
+    evidence = f"{proof.evidence:.2f}" if proof.evidence > 0.005 else "0.00"
+    return f"{proof.weight:.2f} = {proof.prior:.2f} × {evidence}"
+
+
+def relations_of(part: qsr.Component) -> str:
+    """Return the atoms behind a component, without their lines and shares."""
+    return ", ".join(re.findall(r"[\w-]+\([^)]*\)", " ".join(part.statements)))
 
 
 def draw_code() -> None:
@@ -169,6 +251,7 @@ def main() -> None:
         return
     if chosen.only != "tables":
         draw_mixtures()
+        draw_inference()
         draw_code()
         draw_room()
         draw_search("kitchen", "qsr", 7, "kitchen-search")

@@ -22,6 +22,7 @@ def print_answer(answer: qsr.Answer | qsr.RankedViews, console: Console, title: 
             console.print(table_of(answer))
         case _:
             console.print(str(answer), highlight=False, markup=False, soft_wrap=True)
+    _print_axes(answer, console)
     if (
         isinstance(answer, qsr.Where | qsr.Probability | qsr.SceneSamples | qsr.Explanation)
         and answer.assumed
@@ -49,7 +50,7 @@ def title_of(query: str) -> str:
 
 def probability_table(answer: qsr.Probability) -> Table:
     """Return a probability and how it was found as a table."""
-    error = f"{answer.standard_error:.4f}" if answer.method == "draws" else "none"
+    error = f"{answer.standard_error:.1g}" if answer.method == "draws" else "none"
     rows = [(f"{answer.value:.4f}", error, answer.method)]
     return _table(("probability", "standard error", "found by"), rows, caption=_dropped(answer.dropped))
 
@@ -80,7 +81,7 @@ def scenes_table(answer: qsr.SceneSamples) -> Table:
         )
         for name, share, mean, deviation in answer.summary()
     ]
-    caption = f"{len(answer)} scenes of {answer.drawn} drawn; --format json gives each of them"
+    caption = f"{len(answer)} scene{'s' * (len(answer) != 1)} of {answer.drawn} drawn; --format json gives each of them"
     return _table(("thing", "in scenes", "x [m]", "y [m]"), rows, caption=caption)
 
 
@@ -102,6 +103,17 @@ def _print_where(answer: qsr.Where, console: Console, title: str) -> None:
     for number, statement in enumerate(reasons(answer), start=1):
         console.print(f"{number:3d}  {escape(statement)}", highlight=False, soft_wrap=True)
     console.print(frame_line(answer), highlight=False, soft_wrap=True)
+
+
+def _print_axes(answer: qsr.Answer | qsr.RankedViews, console: Console) -> None:
+    """Print the frame of an answer that does not tell it, or, where that is not the map's, how its axes lie."""
+    match answer:
+        case qsr.SceneSamples() as told:
+            console.print(frame_line(told), highlight=False, soft_wrap=True)
+        case qsr.Explanation(answer=qsr.Where() as told) if told.frame != "map":
+            console.print(frame_line(told), highlight=False, soft_wrap=True)
+        case _:
+            pass
 
 
 def answer_table(answer: qsr.Where, title: str) -> Table:
@@ -129,12 +141,14 @@ def reasons(answer: qsr.Where) -> list[str]:
     return list(dict.fromkeys(one for component in answer.components for one in component.statements))
 
 
-def frame_line(answer: qsr.Where) -> str:
+def frame_line(answer: qsr.Where | qsr.SceneSamples) -> str:
     """Return the frame of an answer, and what is left to places that no statement names."""
     if answer.frame == "map":
         frame = "frame: map"
     else:
         frame = f"frame: {answer.frame} at the origin, x away from the viewer, y to its left (no landmark is used)"
+    if isinstance(answer, qsr.SceneSamples):
+        return frame
     rest = f"; elsewhere: {answer.elsewhere:.3f}" if answer.elsewhere > 0.0 else ""
     left_out = _dropped(answer.dropped)
     return f"{frame}{rest}" + (f"; {left_out}" if left_out else "")

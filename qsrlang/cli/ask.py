@@ -28,7 +28,7 @@ def ask(
     ] = None,
     output: OutputFormat = Format.TEXT,
 ) -> None:
-    """Ask what a .qsr file says, such as 'where Cup?'."""
+    """Ask what a .qsr file says: 'where Cup?', 'explain Cup?', 'landmarks Cup?', 'sample 100?', 'check?', 'prob …?'."""
     known = qsr.load(file).with_landmarks(*(landmark or ()))
     seen_from = viewer_pose(viewer)
     answer: qsr.Answer | qsr.RankedViews

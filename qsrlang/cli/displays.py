@@ -60,8 +60,9 @@ def probability_html(answer: qsr.Probability) -> str:
 
 
 def rows_html(answer: qsr.LandmarkRanking | qsr.SceneSamples) -> str:
-    """Return a ranking of landmarks, or where things are in joint scenes."""
-    return table_html(table_of(answer))
+    """Return a ranking of landmarks, or where things are in joint scenes, with their frame."""
+    frame = f"<p>{escape(frame_line(answer))}</p>" if isinstance(answer, qsr.SceneSamples) else ""
+    return table_html(table_of(answer)) + frame
 
 
 def text_html(answer: qsr.Explanation | qsr.Consistency) -> str:

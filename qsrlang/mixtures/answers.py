@@ -87,7 +87,7 @@ class Where:
     def __str__(self) -> str:
         rows = [f"{'weight':>7} {'x [m]':>8} {'y [m]':>8} {'sd [m]':>15} {'axis [deg]':>11}"]
         for component in self.components:
-            (x, y), (major, minor, angle) = component.mean, component.ellipse
+            (x, y), (major, minor, angle) = component.mean.round(3) + 0.0, component.ellipse
             spread = f"{major:.3f} x {minor:.3f}"
             rows.append(f"{component.weight:7.3f} {x:8.3f} {y:8.3f} {spread:>15} {math.degrees(angle):11.1f}")
         rest = f", elsewhere {self.elsewhere:.3f}" if self.elsewhere > 0.0 else ""

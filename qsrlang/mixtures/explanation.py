@@ -25,7 +25,7 @@ class Spot:
     deviations: tuple[float, float]
 
     def __str__(self) -> str:
-        (x, y), (major, minor) = self.mean + 0.0, self.deviations
+        (x, y), (major, minor) = self.mean.round(3) + 0.0, self.deviations
         return f"{self.name} at ({x:.3f}, {y:.3f}) ± {major:.3f} × {minor:.3f} m"
 
 
@@ -118,8 +118,9 @@ class Explanation:
         """Yield the tree as lines of text, up to MAX_SHOWN worlds of it."""
         yield _heading(self.answer)
         shown, rest = self.proofs[:MAX_SHOWN], self.proofs[MAX_SHOWN:]
-        for proof in shown:
-            yield from _branch(proof, isinstance(self.answer, Where))
+        for number, proof in enumerate(shown, start=1):
+            is_last = number == len(shown) and not rest
+            yield from _branch(proof, isinstance(self.answer, Where), is_last)
         if rest:
             yield f"└─ {len(rest)} more worlds, together {sum(proof.weight for proof in rest):.3f}"
 
@@ -148,14 +149,13 @@ def _proof(weighed: Weighed, value: float, target: str | None) -> Proof:
     world, placed = weighed.world, _spots(weighed)
     names = {landmark.name: name for name, landmark in world.bindings}
     used = {str(constraint.statement) for constraint in weighed.plan.constraints}
-    told: set[str] = set()
     reasons = []
-    for share, outcome in reversed(world.decided):
+    for share, outcome in world.decided:
         texts, things = _told(outcome, names)
         texts = tuple(text for text in texts if text in used) or texts[:1]
-        fresh = [placed[name] for name in things if name in placed and name not in told]
-        told |= set(things)
-        reasons.append(Reason(share, texts, tuple(fresh)))
+        spots = tuple(placed.pop(name) for name in dict.fromkeys(things) if name in placed)
+        reasons.append(Reason(share, texts, spots))
+    reasons.reverse()
     spot = None
     if target is not None and value > 0.0:
         spot = _spot(world.named(target), component_of(weighed, target))
@@ -198,14 +198,22 @@ def _heading(answer: Where | Probability) -> str:
     if isinstance(answer, Probability):
         return str(answer)
     rest = f", elsewhere {answer.elsewhere:.3f}" if answer.elsewhere > 0.0 else ""
+    rest += f", dropped {answer.dropped:.2g}" if answer.dropped > 0.0 else ""
     return f"where {answer.target}, frame: {answer.frame}{rest}"
 
 
-def _branch(proof: Proof, is_place: bool) -> Iterator[str]:
-    evidence = f" × evidence {proof.evidence:.3g}" if abs(proof.evidence - 1.0) > 5e-4 else ""
+def _branch(proof: Proof, is_place: bool, is_last: bool) -> Iterator[str]:
     said = (
         (str(proof.spot) if proof.spot else "elsewhere") if is_place else f"holds in {proof.value:.4f} of it"
     )
-    yield f"├─ {proof.weight:.3f} = {proof.prior:.3f}{evidence}: {said}"
+    mark, rail = ("└─", "  ") if is_last else ("├─", "│ ")
+    yield f"{mark} {_weight(proof)}: {said}"
     for reason in proof.reasons:
-        yield from (f"│    {line}" for line in reason.lines())
+        yield from (f"{rail}   {line}" for line in reason.lines())
+
+
+def _weight(proof: Proof) -> str:
+    """Return the weight, and where it is not the product of the shares alone, how it comes about."""
+    if abs(proof.evidence - 1.0) <= 5e-4:
+        return f"{proof.weight:.3f}"
+    return f"{proof.weight:.3f} = {proof.prior:.3f} × evidence {proof.evidence:.3g}"

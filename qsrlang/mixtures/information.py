@@ -136,7 +136,8 @@ def _log_ratios(worlds: Sequence[Solved], names: tuple[str, str], rng: np.random
     has, means, covariances = _joint(worlds, names)
     chosen = rng.choice(len(worlds), size=DRAWS, p=weights / weights.sum())
     roots = np.linalg.cholesky(covariances)
-    points = means[chosen] + np.einsum("dij,dj->di", roots[chosen], rng.standard_normal((DRAWS, 4)))
+    normals = rng.standard_normal((DRAWS, 4)) * has[chosen].repeat(2, axis=1)
+    points = means[chosen] + np.einsum("dij,dj->di", roots[chosen], normals)
     both = _log_density(points, has[chosen], weights, has, means, covariances, slice(0, 4))
     first = _log_density(points, has[chosen], weights, has, means, covariances, slice(0, 2))
     second = _log_density(points, has[chosen], weights, has, means, covariances, slice(2, 4))
@@ -144,10 +145,13 @@ def _log_ratios(worlds: Sequence[Solved], names: tuple[str, str], rng: np.random
 
 
 def _joint(worlds: Sequence[Solved], names: tuple[str, str]) -> tuple[BoolArray, FloatArray, FloatArray]:
-    """Return which of two things each world places (M, 2), and mean (M, 4) and covariance (M, 4, 4) of both places."""
+    """Return which of two things each world places (M, 2), and mean (M, 4) and covariance (M, 4, 4) of both places.
+
+    What a world does not place is at 0 in it, with a covariance by which its density there is 1.
+    """
     seats = [[one.plan.seats.get(one.world.named(name)) for name in names] for one in worlds]
     has = np.array([[seat is not None for seat in pair] for pair in seats], dtype=bool)
-    means, covariances = np.zeros((len(worlds), 4)), np.tile(np.eye(4), (len(worlds), 1, 1))
+    means, covariances = np.zeros((len(worlds), 4)), np.tile(np.eye(4) / (2.0 * math.pi), (len(worlds), 1, 1))
     for row, (one, pair) in enumerate(zip(worlds, seats, strict=True)):
         at = np.flatnonzero(has[row].repeat(2))
         if len(at):
@@ -173,8 +177,6 @@ def _log_density(
     block = covariances[:, columns, columns]
     solved = np.einsum("mij,dmj->dmi", np.linalg.inv(block), off)
     logs = -0.5 * np.einsum("dmi,dmi->dm", off, solved) - 0.5 * np.linalg.slogdet(2.0 * math.pi * block)[1]
-    there: BoolArray = np.any(present[:, things], axis=1)
-    logs = np.where(there[:, None], logs, 0.0)
     return np.asarray(logsumexp(np.where(same, logs, -np.inf), b=weights, axis=1))
 
 

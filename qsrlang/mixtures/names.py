@@ -5,14 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from qsrlang.errors import UnknownNameError, ValueRangeError
-from qsrlang.language.questions import Explain, Landmarks, Prob, Query, Sample, Views, Where
+from qsrlang.language.questions import Check, Explain, Landmarks, Prob, Query, Sample, Views, Where
 from qsrlang.language.syntax import Argument, Atom, atoms_of
 from qsrlang.mixtures.worlds.chains import depends_on
 from qsrlang.relations.graph import RelationGraph
 
 
 def check_question(question: Query, graph: RelationGraph) -> None:
-    """Raise UnknownNameError for a name nothing bears, ValueRangeError for an atom with too many or few arguments."""
+    """Raise UnknownNameError for a name nothing bears, ValueRangeError for an atom with too many or few arguments, and
+    for something given where nothing can be.
+    """
+    if isinstance(question, Landmarks | Check) and question.given is not None:
+        verb, given = type(question).__name__.lower(), question.given.span.text
+        allowed = "nothing; 'where', 'prob', 'explain' and 'sample' may assume something"
+        raise ValueRangeError(f"what is given to '{verb}'", given, allowed)
     if isinstance(question, Sample) and question.subject is not None:
         _check_subject(question.subject.text, graph)
     for part in _parts(question):

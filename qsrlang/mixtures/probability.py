@@ -54,7 +54,7 @@ class Probability:
 
     def __str__(self) -> str:
         given = f" given {', '.join(self.assumed)}" if self.assumed else ""
-        error = f" ± {self.standard_error:.4f}" if self.method == DRAWS else f" ({self.method})"
+        error = f" ± {self.standard_error:.1g}" if self.method == DRAWS else f" ({self.method})"
         return f"prob {self.formula}{given}: {self.value:.4f}{error}"
 
 

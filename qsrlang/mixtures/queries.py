@@ -189,16 +189,17 @@ class KnowledgeBase:
         """Return `count` joint scenes, drawn by `rng` (or a generator with seed 0), without boxes that overlap.
 
         `subject` is a named scene, whose members are drawn, or a class, drawn with all that it is placed by; without
-        one all that statements speak of is drawn. What is `given` and required holds in every scene. Raises
-        UnreachedTargetError where no landmark is known and the objects hang on different classes, NoRoomError,
-        MissingFacingError, ImpossibleConditionError.
+        one all that statements speak of is drawn. What is `given` and required holds in every scene. Without landmarks
+        they are relative to the class that all hang on; raises UnreachedTargetError where those are several,
+        NoRoomError, MissingFacingError, ImpossibleConditionError.
         """
         if not 1 <= count <= MAX_SCENES:
             raise ValueRangeError("the number of scenes", count, f"1 to {MAX_SCENES}")
         names = drawn_names(self.graph, subject)
         conditions = conditions_on(self.graph, names, self._formula(given))
         graph = rooted(self.graph, names)
-        return sample_scenes(graph, names, count, conditions, viewer, rng or np.random.default_rng(0))
+        scenes = sample_scenes(graph, names, count, conditions, viewer, rng or np.random.default_rng(0))
+        return scenes if self.graph.landmarks else replace(scenes, frame=graph.landmarks[0].kind)
 
     def ask(
         self,

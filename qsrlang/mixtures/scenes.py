@@ -33,8 +33,9 @@ MAX_DRAWS_PER_SCENE = 20_000
 class SceneSamples:
     """Joint scenes: where each of N things is in each of S scenes.
 
-    `positions` (S, N, 2) [m] and `headings` (S, N) [rad] in the map frame, not a number for what is elsewhere; `drawn`
-    is how many scenes were drawn to find them, for those that collide or break a requirement are drawn again.
+    `positions` (S, N, 2) [m] and `headings` (S, N) [rad] in the `frame`, as that of `Where`, not a number for what is
+    elsewhere; `drawn` is how many scenes were drawn to find them, for those that collide or break a requirement are
+    drawn again.
     """
 
     names: tuple[str, ...]
@@ -42,6 +43,7 @@ class SceneSamples:
     headings: FloatArray
     drawn: int
     assumed: tuple[str, ...] = ()
+    frame: str = "map"
     draws: None = None
 
     def __len__(self) -> int:
@@ -57,7 +59,7 @@ class SceneSamples:
             }
             for scene in poses
         ]
-        return {"scenes": scenes, "drawn": self.drawn, "assumed": list(self.assumed)}
+        return {"frame": self.frame, "scenes": scenes, "drawn": self.drawn, "assumed": list(self.assumed)}
 
     def summary(self) -> Iterator[tuple[str, float, FloatArray, FloatArray]]:
         """Yield, of each thing, in which share of the scenes it is, and mean and deviation (2,) of where [m]."""
@@ -67,8 +69,12 @@ class SceneSamples:
             yield name, len(there) / len(self), *spread
 
     def __str__(self) -> str:
-        rows = [f"{len(self)} scenes of {len(self.names)} things, {self.drawn} drawn, frame: map"]
-        for name, share, (x, y), (dx, dy) in self.summary():
+        scenes, things = (
+            f"{n} {what}{'s' * (n != 1)}" for n, what in ((len(self), "scene"), (len(self.names), "thing"))
+        )
+        rows = [f"{scenes} of {things}, {self.drawn} drawn, frame: {self.frame}"]
+        for name, share, mean, (dx, dy) in self.summary():
+            x, y = mean.round(3) + 0.0
             rest = f", in {share:.1%} of them" if share < 1.0 else ""
             rows.append(f"{name:>16}  x {x:.3f} ± {dx:.3f}, y {y:.3f} ± {dy:.3f} m{rest}")
         return "\n".join(rows)

@@ -121,6 +121,12 @@ def test_atoms_in_queries_have_as_many_arguments_as_their_relation(atom, given, 
         KNOWN.ask(f"prob {atom}?")
 
 
+@pytest.mark.parametrize("query", ["landmarks Cup", "check"])
+def test_what_cannot_be_given_is_refused(query):
+    with pytest.raises(qsr.ValueRangeError, match=f"what is given to '{query.split()[0]}'"):
+        KNOWN.ask(f"{query} given left-of(Plate, Cup)?")
+
+
 def test_a_landmark_is_no_class():
     with pytest.raises(qsr.UnknownNameError, match="unknown class 'm'"):
         KNOWN.with_landmarks("n : m at (0 m, 0 m)")

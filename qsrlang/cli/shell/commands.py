@@ -58,6 +58,7 @@ def show_help(shell: Shell, argument: str) -> None:
     else:
         shell.note("A statement ends with '.', a query with '?'; both may go over several lines.")
         shell.note("    dynamic Mug.    observe 3 × right-of(Mug, Keyboard).    where Mug?")
+        shell.note("    explain Mug?   landmarks Mug?   sample 9?   prob close-to(Mug, Keyboard)?")
         shell.notes.print(_table())
 
 
