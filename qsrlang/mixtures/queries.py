@@ -133,11 +133,10 @@ class KnowledgeBase:
     ) -> Probability:
         """Return how probable a formula such as `right-of(Cup, Keyboard)` is.
 
-        Of one atom, or its negation, with nothing assumed, the share of the stated densities, or that of the Gaussians
-        of the worlds. Else it is the share of `samples` weighted draws (of `rng`, or of a generator with seed 0) in
-        which the formula holds, among those in which what is `given` and required does, with its standard error.
-        Raises UnreachedTargetError where no landmark is known and the objects hang on different classes,
-        NoRoomError, MissingFacingError, ImpossibleConditionError.
+        By the first way that tells: the stated densities, the Gaussians of the worlds, else `samples` weighted draws (of
+        `rng`, or of a generator with seed 0) among those in which what is `given` and required holds. Raises
+        UnreachedTargetError where no landmark is known and the objects hang on different classes, NoRoomError,
+        MissingFacingError, ImpossibleConditionError.
         """
         how = Manner("exact", samples, rng, viewer, Bounds())
         return self._proved(self._formula(formula), given, how).answer
@@ -154,8 +153,7 @@ class KnowledgeBase:
     ) -> Explanation:
         """Return why a target such as `Cup` is where it is, or why a formula is as probable as it is.
 
-        Its numbers are those of `where` and `prob`, world by world, with the statements behind each decision. Raises
-        what those raise.
+        Its numbers, world by world, are those of `where` and `prob`, and it raises what those raise.
         """
         how = Manner("exact", samples, rng, viewer, Bounds())
         if isinstance(subject, str) and "(" not in subject:
@@ -167,8 +165,7 @@ class KnowledgeBase:
     ) -> LandmarkRanking:
         """Return what a target is placed by, ranked by how much knowing the place of each narrows the search for it.
 
-        By mutual information, from draws of `rng` (or of a generator with seed 0). Raises UnreachedTargetError,
-        NoRoomError and MissingFacingError.
+        By mutual information, from draws of `rng` (or of a generator with seed 0). Raises what `where` raises.
         """
         check_object(target, self.graph)
         return rank_landmarks(self.graph, target, viewer, rng or np.random.default_rng(0))
