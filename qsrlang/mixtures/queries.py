@@ -186,8 +186,7 @@ class KnowledgeBase:
         """Return `count` joint scenes, drawn by `rng` (or a generator with seed 0), without boxes that overlap.
 
         `subject` is a named scene, whose members are drawn, or a class, drawn with all that it is placed by; without
-        one all that statements speak of is drawn. What is `given` and required holds in every scene. Raises what
-        `prob` raises; without landmarks scenes are relative to the class that all things hang on.
+        one all that is related. What is `given` and required holds in every scene. Raises what `prob` raises.
         """
         if not 1 <= count <= MAX_SCENES:
             raise ValueRangeError("the number of scenes", count, f"1 to {MAX_SCENES}")
