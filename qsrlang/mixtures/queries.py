@@ -133,8 +133,8 @@ class KnowledgeBase:
     ) -> Probability:
         """Return how probable a formula such as `right-of(Cup, Keyboard)` is.
 
-        By the first way that tells: the stated densities, the Gaussians of the worlds, else `samples` weighted draws (of
-        `rng`, or of a generator with seed 0) among those in which what is `given` and required holds. Raises
+        By the first way that tells: the stated densities, the Gaussians of the worlds, else `samples` weighted draws
+        (of `rng`, or of a generator with seed 0) among those in which what is `given` and required holds. Raises
         UnreachedTargetError where no landmark is known and the objects hang on different classes, NoRoomError,
         MissingFacingError, ImpossibleConditionError.
         """
