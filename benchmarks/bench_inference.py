@@ -18,9 +18,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import matplotlib
 import numpy as np
-from matplotlib import pyplot
 
 import qsrlang as qsr
 
@@ -318,7 +316,7 @@ def scale() -> list[Curve]:
     print("scale: where the last object is")
     curves = [
         _grown("objects in a chain", chain, (10, 30, 100, 300, 1000), 50e-3),
-        _grown("objects, 3 relations each, 20 landmarks", net, (40, 80, 120, 200), 100e-3),
+        _grown("objects in loops", net, (40, 80, 120, 200), 100e-3),
     ]
     sizes, times = [], []
     for count in (4, 6, 8, 10, 14):
@@ -365,14 +363,8 @@ def _curve(what: str, sizes: list[int], times: list[float]) -> Curve:
 
 def draw(curves: list[Curve], path: Path) -> None:
     """Write a picture of time against size."""
-    matplotlib.use("Agg")
-    figure, axes = pyplot.subplots(figsize=(5.0, 3.6), layout="constrained")
-    for what, sizes, times in curves:
-        axes.loglog(sizes, [1e3 * one for one in times], "o-", label=what)
-    axes.set(xlabel="size", ylabel="where, least of three [ms]")
-    axes.legend(frameon=False)
-    axes.grid(alpha=0.3)
-    figure.savefig(path, dpi=150)
+    lines = {what: (sizes, [1e3 * one for one in times]) for what, sizes, times in curves}
+    qsr.save_figure(qsr.draw_curves(lines, "size", "where, asked first [ms]", log=True), path)
 
 
 def main() -> None:

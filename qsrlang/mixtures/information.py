@@ -16,7 +16,7 @@ from qsrlang.mixtures.answers import Where
 from qsrlang.mixtures.gaussian import MIN_DEVIATION
 from qsrlang.mixtures.inference import Bounds, alone_with, place_exactly
 from qsrlang.mixtures.solving.weighing import Solved, solve_worlds
-from qsrlang.mixtures.worlds.chains import broken_chains, depends_on, needed_for, placed_by
+from qsrlang.mixtures.worlds.chains import broken_chains, needed_for, sources_of
 from qsrlang.relations.graph import RelationGraph
 
 DRAWS = 8192
@@ -91,7 +91,7 @@ def rank_landmarks(
     be anywhere on an area of AREA [m^2] beforehand, and I = log AREA - H(O | L). Raises UnreachedTargetError where
     nothing places the target.
     """
-    names = sorted(_sources(graph, target))
+    names = sorted(sources_of(graph, target))
     if not names:
         raise UnreachedTargetError(target, broken_chains(graph, target))
     if graph.landmarks:
@@ -102,12 +102,6 @@ def rank_landmarks(
         basis = f"no landmark known: each thing anywhere on {AREA:g} m² beforehand"
     ranked = sorted(found, key=lambda one: (-round(one.information, 6), -one.through, one.name))
     return LandmarkRanking(target, basis, tuple(ranked))
-
-
-def _sources(graph: RelationGraph, target: str) -> set[str]:
-    """Return all that a target is placed by, landmarks too, but nothing that those are placed by."""
-    names = depends_on(graph, (target,))
-    return {one for name in names for one in placed_by(graph, name)} | names - {target}
 
 
 def _known(

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from qsrlang.errors import UnknownNameError, ValueRangeError
 from qsrlang.language.questions import Check, Explain, Landmarks, Prob, Query, Sample, Views, Where
 from qsrlang.language.syntax import Argument, Atom, atoms_of
-from qsrlang.mixtures.worlds.chains import depends_on
+from qsrlang.mixtures.worlds.chains import sources_of
 from qsrlang.relations.graph import RelationGraph
 
 
@@ -47,7 +47,7 @@ def drawn_names(graph: RelationGraph, subject: str | None) -> tuple[str, ...]:
         related = {graph.node_of(name) for one in constraints for name in (one.referent, *one.relata)}
         return tuple(sorted(related))
     _check_subject(subject, graph)
-    return graph.scenes.get(subject) or (subject, *sorted(depends_on(graph, (subject,)) - {subject}))
+    return graph.scenes.get(subject) or (subject, *sorted(sources_of(graph, subject)))
 
 
 def _check_subject(name: str, graph: RelationGraph) -> None:

@@ -120,9 +120,9 @@ class TruthTables:
             for seen, number in zip(polar[1:], asked.numbers, strict=True)
         )
         columns = np.array([column for seat in seats for column in layout.pose(seat)])
-        certain = _is_certain(polar, layout, columns)
-        mean, none = layout.mean[columns], np.zeros((len(columns),) * 2)
-        table = _shares(polar[0], windows, mean.tobytes(), none.tobytes()) if certain else None
+        state = _only_state(polar, layout, columns)
+        none = np.zeros((len(columns),) * 2)
+        table = None if state is None else _shares(polar[0], windows, state.tobytes(), none.tobytes())
         return Pair(polar[0], windows, columns, table)
 
 
@@ -141,10 +141,12 @@ def truth_of(formula: Formula, atoms: Sequence[Atom]) -> BoolArray:
             return reduce(np.logical_or, (truth_of(part, atoms) for part in parts))
 
 
-def _is_certain(polar: Sequence[PolarConditional], layout: Layout, columns: IntArray) -> bool:
-    is_free = layout.free[columns]
-    heading = float(layout.mean[columns[2]])
-    return not is_free.any() or (not is_free[2] and all(one.turns(heading, True) for one in polar))
+def _only_state(polar: Sequence[PolarConditional], layout: Layout, columns: IntArray) -> FloatArray | None:
+    """Return the state (K,) that tells of all: any place, where all turn with a heading that is certain."""
+    is_free, heading = layout.free[columns], float(layout.mean[columns[2]])
+    if not is_free[2] and all(one.turns(heading, True) for one in polar):
+        return np.where(np.arange(len(columns)) == 2, heading, 0.0)
+    return None if is_free.any() else layout.mean[columns]
 
 
 def _averaged(pair: Pair, solved: Solved) -> FloatArray:

@@ -91,3 +91,9 @@ def depends_on(graph: RelationGraph, names: Iterable[str]) -> set[str]:
         found |= fresh
         waiting += fresh
     return found
+
+
+def sources_of(graph: RelationGraph, target: str) -> set[str]:
+    """Return all that a target is placed by, landmarks too, but nothing that those are placed by."""
+    names = depends_on(graph, (target,))
+    return {one for name in names for one in placed_by(graph, name)} | names - {target}
