@@ -191,8 +191,8 @@ class KnowledgeBase:
         if not 1 <= count <= MAX_SCENES:
             raise ValueRangeError("the number of scenes", count, f"1 to {MAX_SCENES}")
         names = drawn_names(self.graph, subject)
-        conditions = conditions_on(self.graph, names, self._formula(given))
         graph = rooted(self.graph, names)
+        conditions = conditions_on(graph, names, self._formula(given))
         scenes = sample_scenes(graph, names, count, conditions, viewer, rng or np.random.default_rng(0))
         return scenes if self.graph.landmarks else replace(scenes, frame=graph.landmarks[0].kind)
 
@@ -240,16 +240,15 @@ class KnowledgeBase:
     ) -> Placed:
         for name in (target,) if wrt is None else (target, wrt):
             check_object(name, self.graph)
-        conditions = conditions_on(graph, (target,), self._formula(given))
-        if conditions:
-            drawing = how.drawing()
-            return in_frame(
-                graph,
-                target,
-                wrt,
-                lambda known: place_assuming(known, target, conditions, drawing, how.bounds),
-            )
-        return in_frame(graph, target, wrt, lambda known: how.place(known, target))
+        assumed = self._formula(given)
+
+        def place(known: RelationGraph) -> Placed:
+            conditions = conditions_on(known, (target,), assumed)
+            if conditions:
+                return place_assuming(known, target, conditions, how.drawing(), how.bounds)
+            return how.place(known, target)
+
+        return in_frame(graph, target, wrt, place)
 
     def _proved(self, formula: Formula, given: str | Formula | None, how: Manner) -> Proved:
         assumed = self._formula(given)

@@ -121,6 +121,19 @@ def test_a_requirement_reaches_through_what_the_target_depends_on():
     assert unrelated.where("B").assumed == (), "exact, since nothing that B depends on is required"
 
 
+def test_a_requirement_on_what_is_in_no_known_place_is_passed_over():
+    chain = known("dynamic C. static N. observe left-of(A, M). observe right-of(B, A).")
+    required = known(
+        "dynamic C. static N. observe left-of(A, M). observe right-of(B, A).", "require close-to(A, N)."
+    )
+    np.testing.assert_array_equal(required.where("A").means, chain.where("A").means)
+    relative = known("observe left-of(A, M). observe right-of(B, A). require close-to(A, M).").where(
+        "B", wrt="A"
+    )
+    assert relative.frame == "A"
+    assert relative.assumed == ()
+
+
 def test_a_requirement_between_two_objects_moves_both():
     text = "observe left-of(A, M). observe left-of(B, M). require distant-from(A, B)."
     assert known(text).where("A").assumed

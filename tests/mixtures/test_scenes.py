@@ -90,10 +90,10 @@ def test_what_is_elsewhere_is_in_no_scene():
 def test_a_scene_a_class_or_all_is_drawn():
     text = known(SIDES, "dynamic C. observe left-of(C, B). scene pair(A, M) ⇔ behind-of(A, M).")
     assert set(text.sample("pair").names) == {"A", "M"}
-    assert set(text.sample("C").names) == {"C", "B"}, "up to what landmarks place"
+    assert set(text.sample("C").names) == {"C", "B", "M"}, "up to the landmarks"
     assert set(text.sample().names) == {"A", "B", "C", "M"}
     data = text.sample("C", 2).to_json()
-    assert [set(scene) for scene in data["scenes"]] == [{"C", "B"}] * 2
+    assert [set(scene) for scene in data["scenes"]] == [{"C", "B", "M"}] * 2
     assert all(len(pose) == 3 for scene in data["scenes"] for pose in scene.values())
 
 

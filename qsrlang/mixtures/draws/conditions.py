@@ -9,7 +9,7 @@ import numpy as np
 
 from qsrlang.arrays import BoolArray, FloatArray
 from qsrlang.language.syntax import Atom, Formula, atoms_of
-from qsrlang.mixtures.worlds.chains import depends_on
+from qsrlang.mixtures.worlds.chains import depends_on, is_tied
 from qsrlang.relations.graph import RelationGraph
 
 
@@ -44,9 +44,16 @@ def assumed_atoms(conditions: Iterable[Condition]) -> tuple[Atom, ...]:
 
 
 def conditions_on(graph: RelationGraph, names: Sequence[str], given: Formula | None) -> tuple[Condition, ...]:
-    """Return what is given, and the requirements that speak of what the names depend on, or of what those do."""
+    """Return what is given, and the requirements that speak of what the names depend on, or of what those do.
+
+    A requirement on what no landmark places cannot be judged, and is passed over.
+    """
     found = [] if given is None else [Condition(given, None, " ".join(given.span.text.split()))]
-    open_ones = [Condition(one.formula, one.share, one.statement.text) for one in graph.requirements]
+    open_ones = [
+        Condition(one.formula, one.share, one.statement.text)
+        for one in graph.requirements
+        if all(is_tied(graph, name) for name in objects_of(one.formula))
+    ]
     while open_ones:
         named = [*names, *(name for one in found for name in objects_of(one.formula))]
         reached = depends_on(graph, named)

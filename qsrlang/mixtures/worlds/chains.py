@@ -35,6 +35,12 @@ def chain_starts(graph: RelationGraph, target: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(starts))
 
 
+def is_tied(graph: RelationGraph, name: str) -> bool:
+    """Return whether something is a landmark, or a chain may tie it to one."""
+    starts = (graph.class_of(name), *chain_starts(graph, name))
+    return any(graph.instances_of(start) for start in starts)
+
+
 def broken_chains(graph: RelationGraph, target: str) -> tuple[str, ...]:
     """Return, for each thing a target is placed by, a sentence on where its chains end, or run in a circle, without a
     landmark.
