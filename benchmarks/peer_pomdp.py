@@ -254,9 +254,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument("--simulations", type=int, nargs="+", default=SIMULATIONS)
+    parser.add_argument("--priors", nargs="+", default=("uniform", "landmark"))
+    parser.add_argument("--rollouts", nargs="+", default=("random", "heuristic"))
     options = parser.parse_args()
     use_threads(1)
-    for prior in ("uniform", "landmark"):
+    for prior in options.priors:
         with contextlib.redirect_stdout(io.StringIO()):
             play_ours(world(0, prior))
             ours = [play_ours(world(seed, prior)) for seed in range(options.seeds)]
@@ -269,17 +271,17 @@ def main() -> None:
             flush=True,
         )
         for simulations in options.simulations:
-            for heuristic in (False, True):
+            for rollouts in options.rollouts:
                 with contextlib.redirect_stdout(io.StringIO()):
                     theirs = [
-                        play_pouct(world(seed, prior), simulations, heuristic)
+                        play_pouct(world(seed, prior), simulations, rollouts == "heuristic")
                         for seed in range(options.seeds)
                     ]
                 told = np.array([episode.steps for episode in theirs], dtype=float)
                 took = sum(one.planning for one in theirs) / sum(one.decisions for one in theirs)
                 low, high = interval(steps - told)
                 share = per_run / (sum(one.planning for one in theirs) / len(theirs))
-                name = f"POUCT, {simulations} simulations, {'heuristic' if heuristic else 'random'} rollouts"
+                name = f"POUCT, {simulations} simulations, {rollouts} rollouts"
                 print(
                     f"    {name:44s} {told.mean():6.2f} steps  {1e3 * took:8.1f} ms a decision; ours less theirs "
                     f"{(steps - told).mean():+.2f} [{low:+.2f}, {high:+.2f}] steps, our planning {share:.4f} of theirs",

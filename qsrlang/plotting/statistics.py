@@ -19,7 +19,7 @@ from qsrlang.plotting.canvas import new_figure
 CONFIDENCE = 0.95
 
 _WIDTH, _HEIGHT = 5.6, 3.0
-_BOX = (0.085, 0.145, 0.67, 0.815)
+_BOX = (0.085, 0.145, 0.645, 0.815)
 _LABEL_STEP = 0.055
 _NOTE_SIZE = 6.0
 
