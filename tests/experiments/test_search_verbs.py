@@ -100,3 +100,33 @@ def test_mistakes_are_errors_of_ours(cell, tmp_path):
         result = run(*arguments)
         assert isinstance(result.exception, QSRError), arguments
         assert "\n" not in str(result.exception)
+
+
+def test_search_explains_what_views_were_worth_and_cost(cell):
+    with cell.open("a", encoding="utf-8") as file:
+        file.write('[arms.rollout]\nplanner = "rollout"\npreset = "lookahead"\n')
+    told = run("search", cell, "--arm", "rollout", "--seed", 1, "--explain", "--no-pictures")
+    assert told.exit_code == 0
+    for part in ("seconds saved", "best view: (", "runner-up: (", "chance per second", "plan from there"):
+        assert part in told.output, part
+    story = json.loads(
+        run("search", cell, "--arm", "rollout", "--seed", 1, "--no-pictures", "--format", "json").stdout
+    )
+    terms = story["steps"][0]["terms"]
+    assert terms["index"] == pytest.approx(terms["gain"] / terms["seconds"])
+    assert story["verdict"] == "found"
+    plain = run("search", cell, "--seed", 1, "--explain", "--no-pictures")
+    assert "it does not weigh what views cost" in plain.output
+
+
+def test_compare_takes_a_camera_that_errs(cell, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    options = ("--arms", "qsr", "--trials", 3, "--variant", "one", "--processes", 1, "--format", "json")
+    exact = run("compare", cell, *options)
+    erring = run("compare", cell, *options, "--detection-rate", 0.05)
+    assert exact.exit_code == erring.exit_code == 0
+    assert len(list((tmp_path / "runs").glob("*.csv"))) == 2, "each has a file of its own"
+    times = [json.loads(one.stdout)["arms"]["qsr"]["time_censored"] for one in (exact, erring)]
+    assert times[0] < times[1]
+    senseless = run("compare", cell, *options, "--detection-rate", 0.0)
+    assert isinstance(senseless.exception, QSRError)
