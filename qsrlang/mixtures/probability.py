@@ -15,6 +15,7 @@ from qsrlang.mixtures.draws.conditioning import Drawing, draw_scenes, effective_
 from qsrlang.mixtures.draws.conditions import Condition, assumed_atoms, conditions_on, objects_of
 from qsrlang.mixtures.solving.pairs import direction_probability
 from qsrlang.mixtures.solving.tables import MAX_ATOMS, TruthTables, truth_of
+from qsrlang.mixtures.solving.trees import tree_table
 from qsrlang.mixtures.solving.weighing import Assumed, Solved, solve_worlds
 from qsrlang.mixtures.weighed import Weighed
 from qsrlang.mixtures.worlds.enumeration import MAX_WORLDS
@@ -65,6 +66,38 @@ class Proved:
     answer: Probability
     worlds: Sequence[Weighed]
     shares: Sequence[float]
+
+
+def probability(
+    graph: RelationGraph,
+    formula: Formula,
+    given: Formula | None,
+    viewer: Pose2 | None,
+    drawing: Callable[[], Drawing],
+    limit: int = MAX_WORLDS,
+) -> Probability:
+    """Return P(formula | given, requirements), as `prove` does; of trees without telling worlds apart."""
+    conditions = conditions_on(graph, objects_of(formula), given)
+    found = _of_tree(graph, formula, conditions, viewer)
+    return found or prove(graph, formula, given, viewer, drawing, limit).answer
+
+
+def _of_tree(
+    graph: RelationGraph, formula: Formula, conditions: tuple[Condition, ...], viewer: Pose2 | None
+) -> Probability | None:
+    atoms = (*atoms_of(formula), *assumed_atoms(conditions))
+    if len(atoms) > MAX_ATOMS:
+        return None
+    telling = _Telling.of(graph, formula, conditions, atoms, viewer)
+    names = objects_of(formula, *(one.formula for one in conditions))
+    table = tree_table(graph, names, atoms, telling.tables)
+    if table is None:
+        return None
+    true, whole = telling.weighed(table)
+    texts = tuple(one.text for one in conditions)
+    if not whole > 0.0:
+        raise ImpossibleConditionError(texts, 0)
+    return Probability(text_of(formula), min(true / whole, 1.0), EXACT, assumed=texts)
 
 
 def prove(
@@ -144,13 +177,16 @@ class _Telling:
         held = truth_of(formula, atoms) * (1.0 if assumed is None else assumed)
         return cls(graph, TruthTables(graph, atoms, viewer), atoms, held, assumed, viewer)
 
+    def weighed(self, table: FloatArray) -> tuple[float, float]:
+        """Return the mass of a table in which formula and conditions hold, and that of the conditions."""
+        whole = 1.0 if self.assumed is None else float((table * self.assumed).sum())
+        return float((table * self.held).sum()), whole
+
     def masses(self, solved: Solved) -> tuple[float, float, bool] | None:
         """Return the mass of a world in which formula and conditions hold, that of the latter, and if exact."""
         found = self.tables.of(solved)
         if found is not None:
-            table, exact = found
-            whole = 1.0 if self.assumed is None else float((table * self.assumed).sum())
-            return float((table * self.held).sum()), whole, exact
+            return (*self.weighed(found[0]), found[1])
         if self.assumed is not None or len(self.atoms) != 1:
             return None
         share = direction_probability(self.graph, solved, self.atoms[0], self.viewer)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field, replace
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import TypeAlias, overload
+from typing import TypeAlias, TypeVar, overload
 
 import numpy as np
 
@@ -25,7 +26,7 @@ from qsrlang.mixtures.information import LandmarkRanking, rank_landmarks
 from qsrlang.mixtures.manner import Manner
 from qsrlang.mixtures.names import check_atom, check_object, check_question, drawn_names
 from qsrlang.mixtures.poses import Poses, landmarks_at
-from qsrlang.mixtures.probability import Probability, Proved, prove
+from qsrlang.mixtures.probability import Probability, probability, prove
 from qsrlang.mixtures.reduction import MAX_COMPONENTS
 from qsrlang.mixtures.scenes import SceneSamples, sample_scenes
 from qsrlang.mixtures.worlds.enumeration import MAX_WORLDS
@@ -39,6 +40,8 @@ from qsrlang.relations.values import landmark_value
 
 Answer: TypeAlias = Where | Probability | Explanation | LandmarkRanking | SceneSamples | Consistency
 DEFAULT_SAMPLES = 10_000
+
+_T = TypeVar("_T")
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +92,7 @@ class KnowledgeBase:
 
     def for_question(self, question: questions.Query) -> KnowledgeBase:
         """Return the knowledge that holds in the circumstances of a question; raises UnknownNameError for its names."""
-        known = self.under(_refined(self.circumstances, Circumstances.of(question.circumstances)))
+        known = self.under(self.circumstances.refined(question.circumstances))
         check_question(question, known.graph)
         return known
 
@@ -139,7 +142,7 @@ class KnowledgeBase:
         MissingFacingError, ImpossibleConditionError.
         """
         how = Manner("exact", samples, rng, viewer, Bounds())
-        return self._proved(self._formula(formula), given, how).answer
+        return self._told(probability, self._formula(formula), given, how)
 
     def explain(
         self,
@@ -158,7 +161,7 @@ class KnowledgeBase:
         how = Manner("exact", samples, rng, viewer, Bounds())
         if isinstance(subject, str) and "(" not in subject:
             return explain_where(self._placed(self.graph, subject, wrt, given, how), subject)
-        return explain_probability(self._proved(self._formula(subject), given, how))
+        return explain_probability(self._told(prove, self._formula(subject), given, how))
 
     def rank_landmarks(
         self, target: str, *, viewer: Pose2 | None = None, rng: np.random.Generator | None = None
@@ -250,10 +253,12 @@ class KnowledgeBase:
 
         return in_frame(graph, target, wrt, place)
 
-    def _proved(self, formula: Formula, given: str | Formula | None, how: Manner) -> Proved:
+    def _told(
+        self, tell: Callable[..., _T], formula: Formula, given: str | Formula | None, how: Manner
+    ) -> _T:
         assumed = self._formula(given)
         graph = rooted(self.graph, objects_of(formula, *([assumed] if assumed else [])))
-        return prove(graph, formula, assumed, how.viewer, how.drawing, how.bounds.worlds)
+        return tell(graph, formula, assumed, how.viewer, how.drawing, how.bounds.worlds)
 
     @overload
     def _formula(self, formula: str | Formula) -> Formula: ...
@@ -286,12 +291,6 @@ def _known(source: Source) -> KnowledgeBase:
     built = build_graph(source)
     raise_errors(built.diagnostics)
     return KnowledgeBase(built.graph, built.diagnostics, built)
-
-
-def _refined(circumstances: Circumstances, asked: Circumstances) -> Circumstances:
-    """Return circumstances with what is asked for in the place of what was."""
-    said = {name: value for name, value in asdict(asked).items() if value is not None}
-    return replace(circumstances, **said)
 
 
 @lru_cache(maxsize=256)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, replace
 
 from qsrlang.language.questions import Circumstances as Asked
 from qsrlang.language.statements import Condition, Context, Days, Period, Room
@@ -29,6 +29,11 @@ class Circumstances:
             return cls()
         weekend = None if asked.days is None else asked.days == "weekend"
         return cls(asked.room.text if asked.room else None, weekend, asked.time)
+
+    def refined(self, asked: Asked | None) -> Circumstances:
+        """Return these circumstances with what a query names in the place of what was."""
+        said = {name: value for name, value in asdict(Circumstances.of(asked)).items() if value is not None}
+        return replace(self, **said)
 
 
 def circumstances_of(context: Context) -> Circumstances | None:

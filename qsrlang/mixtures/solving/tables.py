@@ -19,8 +19,9 @@ from qsrlang.mixtures.densities.stated import make_conditional
 from qsrlang.mixtures.densities.windows import Window, share_inside
 from qsrlang.mixtures.solving.linear import cubature
 from qsrlang.mixtures.solving.weighing import Solved
+from qsrlang.mixtures.worlds.enumeration import World
 from qsrlang.mixtures.worlds.layout import Layout, compact_anchor
-from qsrlang.mixtures.worlds.plans import Step, asked_step, seats_read
+from qsrlang.mixtures.worlds.plans import Plan, Step, asked_step, seats_read
 from qsrlang.mixtures.worlds.supports import Seat
 from qsrlang.relations.graph import RelationGraph
 
@@ -71,7 +72,7 @@ class TruthTables:
         """
         if solved.plan.fused or len(self._atoms) > MAX_ATOMS:
             return None
-        asked = self._asked_in(solved)
+        asked = self.asked(solved.world, solved.plan)
         placing = {step.referent: step for step in solved.plan.steps if step.places}
         table, exact = np.ones((1,) * len(self._atoms)), True
         for one in asked:
@@ -80,19 +81,19 @@ class TruthTables:
                 return None
             exact &= pair.table is not None
             shares = _averaged(pair, solved) if pair.table is None else pair.table
-            table = table * _along(shares, one.numbers, len(self._atoms))
+            table = table * along(shares, one.numbers, len(self._atoms))
         placed = {number for one in asked for number in one.numbers}
         for number in set(range(len(self._atoms))) - placed:
-            table = table * _along(np.array([1.0, 0.0]), (number,), len(self._atoms))
+            table = table * along(np.array([1.0, 0.0]), (number,), len(self._atoms))
         return table, exact
 
-    def _asked_in(self, solved: Solved) -> tuple[Asked, ...]:
+    def asked(self, world: World, plan: Plan) -> tuple[Asked, ...]:
         """Return what is asked in worlds of one layout, pair by pair."""
-        layout = solved.plan.layout
+        layout = plan.layout
         if id(layout) not in self._asked:
             groups: dict[tuple[Seat, Seat], list[tuple[int, Step]]] = defaultdict(list)
             for number, atom in enumerate(self._atoms):
-                step = asked_step(self._graph, solved.world, solved.plan.seats, atom)
+                step = asked_step(self._graph, world, plan.seats, atom)
                 if step is not None:
                     groups[step.referent, step.relatum].append((number, step))
             asked = tuple(Asked(*zip(*group, strict=True)) for group in groups.values())
@@ -105,10 +106,11 @@ class TruthTables:
             return None
         key = (id(solved.plan.layout), id(step.constraint), asked.numbers[0])
         if key not in self._pairs:
-            self._pairs[key] = self._read(solved.plan.layout, step, asked)
+            self._pairs[key] = self.read(solved.plan.layout, step, asked)
         return self._pairs[key]
 
-    def _read(self, layout: Layout, placing: Step, asked: Asked) -> Pair | None:
+    def read(self, layout: Layout, placing: Step, asked: Asked) -> Pair | None:
+        """Return what the density of a step says of the atoms asked of its pair; None where it is not a polar one."""
         seats = seats_read(placing, *asked.steps)
         anchor = partial(compact_anchor, seats)
         said = [make_conditional(self._graph, one, anchor, self._viewer) for one in (placing, *asked.steps)]
@@ -177,6 +179,6 @@ def _shares(
     return table
 
 
-def _along(table: FloatArray, numbers: Sequence[int], count: int) -> FloatArray:
+def along(table: FloatArray, numbers: Sequence[int], count: int) -> FloatArray:
     """Return a table over some atoms, in rising order, as one over all of them."""
     return table.reshape([2 if number in numbers else 1 for number in range(count)])
