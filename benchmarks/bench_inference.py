@@ -11,14 +11,14 @@ from __future__ import annotations
 
 import argparse
 import json
-import statistics
 import subprocess
 import time
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from timing import Spread
 
 import qsrlang as qsr
 
@@ -32,26 +32,6 @@ static M { front: yes }.
 relation short(referent, relatum) { distance: uniform(10 cm, 1 m) }.
 relation middling(referent, relatum) { distance: uniform(50 cm, 2 m) }.
 """
-
-
-@dataclass(frozen=True)
-class Spread:
-    """Several measurements of one thing: median, least, greatest."""
-
-    median: float
-    least: float
-    greatest: float
-
-    @classmethod
-    def of(cls, values: Iterable[float]) -> Spread:
-        """Return the spread of some values."""
-        values = list(values)
-        return cls(statistics.median(values), min(values), max(values))
-
-    def text(self, scale: float, unit: str) -> str:
-        """Return the median with least and greatest, in a unit of which a value has `scale`."""
-        low, middle, high = (f"{scale * one:,.4g}" for one in (self.least, self.median, self.greatest))
-        return f"{middle} {unit} ({low} to {high})"
 
 
 def seconds(work: Callable[[], object], repeats: int = 7) -> Spread:

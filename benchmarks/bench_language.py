@@ -7,11 +7,10 @@ from __future__ import annotations
 
 import subprocess
 import sys
-import time
-from collections.abc import Callable
 
 import numpy as np
 from lark import Lark
+from timing import best_of
 
 import qsrlang as qsr
 from qsrlang.language.grammar import grammar_text
@@ -28,16 +27,6 @@ WRONG = "observe 3 × left-of(Cup Plate) ∧ close-to(Cup, Plate).\n"
 MEGABYTE = 1_000_000
 
 
-def seconds(work: Callable[[], object], repeats: int) -> float:
-    """The least of several times: what the work takes where nothing else does."""
-    times = []
-    for _ in range(repeats):
-        start = time.perf_counter()
-        work()
-        times.append(time.perf_counter() - start)
-    return min(times)
-
-
 def show(what: str, took: float, beside: str = "") -> None:
     print(f"{what:58s} {1e3 * took:10.2f} ms   {beside}")
 
@@ -49,8 +38,8 @@ def repeated(text: str, size: int) -> str:
 def small_file() -> None:
     text = CLASSES + FIGURE_2
     build_graph(Source("figure-2.qsr", text))
-    show("Fig. 2 file, text to relation graph, warm", seconds(lambda: build_graph(Source("f", text)), 50))
-    show("office/desk, text to relation graph, warm", seconds(lambda: qsr.load("office/desk"), 20))
+    show("Fig. 2 file, text to relation graph, warm", best_of(lambda: build_graph(Source("f", text)), 50))
+    show("office/desk, text to relation graph, warm", best_of(lambda: qsr.load("office/desk"), 20))
 
 
 def rate() -> None:
@@ -63,8 +52,8 @@ def rate() -> None:
         propagate_positions=True,
         maybe_placeholders=False,
     )
-    limit = seconds(lambda: bare.parse(text), 3)
-    took = seconds(lambda: qsr.parse(text), 3)
+    limit = best_of(lambda: bare.parse(text), 3)
+    took = best_of(lambda: qsr.parse(text), 3)
     kilobytes = len(text.encode()) / 1e3
     beside = f"{kilobytes / took:.0f} KB/s; bare lark to trees {kilobytes / limit:.0f} KB/s, ratio {limit / took:.2f}"
     show("1 MB of formulas to nodes, positions and recovery", took, beside)
@@ -73,14 +62,14 @@ def rate() -> None:
 def growth(what: str, text: str) -> None:
     sizes = [MEGABYTE // 8, MEGABYTE // 4, MEGABYTE // 2, MEGABYTE]
     texts = [repeated(text, size) for size in sizes]
-    times = [seconds(lambda text=text: qsr.parse(text), 2) for text in texts]
+    times = [best_of(lambda text=text: qsr.parse(text), 2) for text in texts]
     exponent = np.polyfit(np.log(sizes), np.log(times), 1)[0]
     show(what, times[-1], f"{sizes[-1] / 1e3 / times[-1]:.0f} KB/s; time grows as size^{exponent:.2f}")
 
 
 def cold_start() -> None:
     command = [sys.executable, "-c", "from qsrlang.cli.main import main; main()", "check", "office/desk"]
-    took = seconds(lambda: subprocess.run(command, check=True, capture_output=True), 7)
+    took = best_of(lambda: subprocess.run(command, check=True, capture_output=True), 7)
     show("qsr check office/desk, a new process", took)
 
 

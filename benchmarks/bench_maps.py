@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import tempfile
 import time
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
+from timing import best_of
 
 from qsrlang.maps.mapping import VoxelMapper
 from qsrlang.maps.navigation import NavigationGrid, occupancy_from_voxels
@@ -27,16 +27,6 @@ from qsrlang.resources import data_root
 
 KITCHEN = Path("tum_kitchen/tum_kitchen_octomap.bt")
 CLEARANCE = 0.3
-
-
-def best_of(action: Callable[[], object], repeats: int = 5) -> float:
-    action()
-    times = []
-    for _ in range(repeats):
-        start = time.perf_counter()
-        action()
-        times.append(time.perf_counter() - start)
-    return min(times)
 
 
 def report(name: str, seconds: float, peer: str, peer_seconds: float) -> None:

@@ -5,27 +5,14 @@ python benchmarks/bench_reasoning.py
 
 from __future__ import annotations
 
-import statistics
-import time
-from collections.abc import Callable
-
 import numpy as np
+from timing import middle_of
 
 import qsrlang as qsr
 from qsrlang.maps.occlusion import clear_rays
 
 MONITOR = "monitor-1 : Monitor at (0 m, 0 m) facing -90 deg ± (2 cm, 2 cm, 3 deg)"
 DESK = "desk-1 : Desk at (0 m, -0.2 m) facing -90 deg"
-
-
-def seconds(work: Callable[[], object], repeats: int = 7) -> float:
-    work()
-    times = []
-    for _ in range(repeats):
-        start = time.perf_counter()
-        work()
-        times.append(time.perf_counter() - start)
-    return statistics.median(times)
 
 
 def show(what: str, took: float, beside: str) -> None:
@@ -35,11 +22,13 @@ def show(what: str, took: float, beside: str) -> None:
 def inference() -> None:
     desk = qsr.load("office/desk")
     free, placed = desk.with_landmarks(MONITOR), desk.with_landmarks(MONITOR, DESK)
-    exact = seconds(lambda: free.where("Cup"))
+    exact = middle_of(lambda: free.where("Cup"))
     show("where Cup?, landmark uncertain", exact, "")
-    show("where Bottle?, three hops, with the edge of the desk", seconds(lambda: placed.where("Bottle")), "")
+    show(
+        "where Bottle?, three hops, with the edge of the desk", middle_of(lambda: placed.where("Bottle")), ""
+    )
     rng = np.random.default_rng(0)
-    drawn = seconds(lambda: free.where("Cup", engine="sampling", samples=100_000, rng=rng), 3)
+    drawn = middle_of(lambda: free.where("Cup", engine="sampling", samples=100_000, rng=rng), 3)
     show("where Cup? by 100,000 samples, as in the paper", drawn, f"{drawn / exact:.0f} x the exact moments")
 
 
@@ -49,25 +38,25 @@ def views() -> None:
     weights, cone = rng.random(20_000), qsr.Triangle(3.0, 1.0)
     pairs = len(poses) * len(voxels)
     plane = np.empty((len(poses), len(voxels)))
-    limit = seconds(lambda: np.add.outer(poses[:, 0], voxels[:, 0], out=plane), 3)
-    took = seconds(lambda: qsr.view_values(poses, cone, voxels, weights), 3)
+    limit = middle_of(lambda: np.add.outer(poses[:, 0], voxels[:, 0], out=plane), 3)
+    took = middle_of(lambda: qsr.view_values(poses, cone, voxels, weights), 3)
     show(
         "equation 3, 500 poses x 20,000 voxels",
         took,
-        f"{pairs / took / 1e6:.0f} M pairs/s, {took / limit:.0f} x one sum",
+        f"{pairs / took / 1e6:.0f} M pairs/s, {took / limit:.2g} x one sum",
     )
     states = np.where(rng.random((160, 240, 50)) < 0.02, qsr.Cell.OCCUPIED, qsr.Cell.FREE).astype(np.uint8)
     grid = qsr.VoxelGrid(states, 0.05, np.zeros(3), "noise")
     ends = rng.uniform([0.0, 0.0, 0.0], [8.0, 12.0, 2.5], (100_000, 3))
     starts = np.broadcast_to([4.0, 6.0, 1.7], ends.shape)
-    took = seconds(lambda: clear_rays(grid, starts, ends), 3)
+    took = middle_of(lambda: clear_rays(grid, starts, ends), 3)
     show("occlusion, 100,000 rays through noise", took, f"{len(ends) / took / 1e6:.1f} M rays/s")
 
 
 def relations() -> None:
     points = np.random.default_rng(0).normal(size=(3, 2_000_000, 2))
-    took = seconds(lambda: qsr.qualify(*points), 3)
-    limit = seconds(lambda: points[1] - points[0], 3)
+    took = middle_of(lambda: qsr.qualify(*points), 3)
+    limit = middle_of(lambda: points[1] - points[0], 3)
     rate = points.shape[1] / took / 1e6
     show("TPCC relations of 2,000,000 triples", took, f"{rate:.0f} M/s, {took / limit:.1f} x one difference")
 
@@ -101,25 +90,25 @@ def scattered(objects: int, atoms: int, landmarks: int) -> str:
 
 def consistency() -> None:
     desk = qsr.load("office/desk").graph
-    show("consistency of the desk of Fig. 2", seconds(lambda: qsr.find_conflicts(desk)), "")
+    show("consistency of the desk of Fig. 2", middle_of(lambda: qsr.find_conflicts(desk)), "")
     free = qsr.parse_knowledge(scattered(200, 600, 0)).graph
-    took = seconds(lambda: qsr.find_conflicts(free))
+    took = middle_of(lambda: qsr.find_conflicts(free))
     show("consistency, 200 objects, 600 directions", took, "two orders, no numbers")
     placed = qsr.parse_knowledge(scattered(200, 600, 20)).graph
-    numbers = seconds(lambda: qsr.find_conflicts(placed))
+    numbers = middle_of(lambda: qsr.find_conflicts(placed))
     show("the same, 20 landmarks: linear programme", numbers, f"{numbers / took:.1f} x the orders")
     circle = "require left-of(Thing0, Thing1) wrt absolute ∧ left-of(Thing1, Thing2) wrt absolute ∧ "
     wrong = f"{scattered(200, 600, 0)}\n{circle} left-of(Thing2, Thing0) wrt absolute."
     broken = qsr.parse_knowledge(wrong).graph
     found = qsr.find_conflicts(broken).conflicts
     shown = f"{len(found)} minimal, of {', '.join(str(len(one.atoms)) for one in found)} atoms, with their changes"
-    show("its conflicts, with a circle of three", seconds(lambda: qsr.find_conflicts(broken), 3), shown)
+    show("its conflicts, with a circle of three", middle_of(lambda: qsr.find_conflicts(broken), 3), shown)
 
 
 def assumptions() -> None:
     known = qsr.load("office/desk").with_landmarks(MONITOR)
     for query in ("prob right-of(Cup, Keyboard)?", "where Cup given close-to(Cup, Keyboard)?"):
-        show(f"{query[:-1]}, 10,000 draws", seconds(lambda query=query: known.ask(query)), "")
+        show(f"{query[:-1]}, 10,000 draws", middle_of(lambda query=query: known.ask(query)), "")
 
 
 if __name__ == "__main__":

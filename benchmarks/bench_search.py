@@ -9,14 +9,13 @@ from __future__ import annotations
 import argparse
 import os
 import subprocess
-import time
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 from kitchen_searches import CASES, tell_case, tell_knowledge, tell_noise
 from numba import njit
 from random_rooms import excesses
+from timing import best_of
 
 import qsrlang as qsr
 from qsrlang.maps.occlusion import clear_rays
@@ -29,16 +28,6 @@ IMAGES = HERE.parent / "docs" / "images"
 PEERS = Path(os.environ.get("QSR_PEERS", HERE.parent / ".peers")) / "bin" / "python"
 PARTS = ("kernels", "rooms", "pomdp", "kitchen")
 SEED = 1
-
-
-def best_of(action: Callable[[], object], repeats: int = 5) -> float:
-    action()
-    times = []
-    for _ in range(repeats):
-        start = time.perf_counter()
-        action()
-        times.append(time.perf_counter() - start)
-    return min(times)
 
 
 @njit(nogil=True, fastmath=True)
