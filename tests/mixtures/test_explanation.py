@@ -1,6 +1,7 @@
 """Proofs: their numbers are those of `where` and `prob`."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -38,7 +39,8 @@ def test_the_proof_of_a_probability_sums_to_it(base):
     assert_it_adds_up(explanation)
     total = sum(proof.weight * proof.value for proof in explanation.proofs)
     assert total == pytest.approx(answer.value, abs=1e-9)
-    assert explanation.answer == answer
+    assert explanation.answer.value == pytest.approx(answer.value, abs=1e-12)
+    assert replace(explanation.answer, value=answer.value) == answer
     assert explanation.assumed == answer.assumed
 
 
