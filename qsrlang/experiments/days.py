@@ -26,7 +26,7 @@ from qsrlang.language.statements import Declaration, Landmark
 from qsrlang.learning.differences import differences
 from qsrlang.learning.experience import experience_of
 from qsrlang.learning.merging import learn_anew, learned_before
-from qsrlang.learning.observations import NUMBERS, Observations
+from qsrlang.learning.observations import NUMBERS, Observations, Row
 from qsrlang.learning.searches import sightings_of
 from qsrlang.learning.store import ObservationStore
 from qsrlang.mixtures.queries import KnowledgeBase, load
@@ -183,9 +183,9 @@ def by_nearest_landmark(seen: Observations, landmarks: int) -> Observations:
         return seen
     places = seen.numbers[:, [NUMBERS.index("x"), NUMBERS.index("y")]]
     gaps = np.hypot(*(places[landmarks:, None] - places[None, :landmarks]).transpose(2, 0, 1))
-    found: list[dict[str, str | float]] = []
+    found: list[Row] = []
     for near, thing in zip(gaps.argmin(axis=1), things, strict=True):
-        scene = {"scene": f"{thing['scene']}, {thing['object']}"}
+        scene: dict[str, str | float] = {"scene": f"{thing['scene']}, {thing['object']}"}
         found += [known[near] | scene, thing | scene]
     return Observations.of(found)
 
@@ -237,4 +237,5 @@ def change_in_words(before: KnowledgeBase, after: KnowledgeBase) -> str:
     first, more = changes[0], len(changes) - 1
     bits = "" if first.bits is None else f" ({first.bits:.2f} bits)"
     referent, relatum = first.pair
-    return f"{referent} from {relatum} {first.words}{bits}" + (f", and {more} more" if more else "")
+    pair = f"{referent} from {relatum}" + ("" if first.bits is None else ":")
+    return f"{pair} {first.words}{bits}" + (f", and {more} more" if more else "")
