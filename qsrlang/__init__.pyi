@@ -14,6 +14,7 @@ from .errors import (
     ValueRangeError,
 )
 from .experiments.comparing import compare
+from .experiments.days import Day, search_and_learn
 from .experiments.pictures import draw_story
 from .experiments.recording import Experiment
 from .experiments.scenarios import Scenario, load_scenario
@@ -127,6 +128,7 @@ __all__ = [
     "Conflict",
     "Consistency",
     "Contexts",
+    "Day",
     "Detection",
     "Detector",
     "Diagnostic",
@@ -270,6 +272,7 @@ __all__ = [
     "save_figure",
     "scene_picture",
     "search",
+    "search_and_learn",
     "search_world",
     "shortest_path",
     "sightings_of",

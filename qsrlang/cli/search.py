@@ -1,4 +1,4 @@
-"""`qsr search SCENARIO`: one search, told step by step, with a picture of each step."""
+"""`qsr search SCENARIO`: one search, told step by step, with a picture of each step; with `--learn` one a day."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from qsrlang.cli.days import tell_days
 from qsrlang.cli.narration import narrate_end, narrate_opening, narrate_step, story_json
 from qsrlang.cli.options import (
     CameraName,
@@ -49,10 +50,22 @@ def search(
     explain: Annotated[
         bool, typer.Option(help="Tell what the best view and the runner-up were worth and cost.")
     ] = False,
+    learn: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE.qsr",
+            help="Search once a day while things move, and learn into this file from each search.",
+        ),
+    ] = None,
+    days: Annotated[int, typer.Option(min=1, help="With --learn: how many days; those done are kept.")] = 7,
     form: OutputFormat = Format.TEXT,
 ) -> None:
     """Search for an object once and tell every step: what is believed, where it looks, why, what it saw."""
-    opening = open_search(load_scenario(scenario, camera, robot, knowledge), target, arm, variant)
+    loaded = load_scenario(scenario, camera, robot, knowledge)
+    if learn is not None:
+        tell_days(loaded, learn, days, target, arm, seed, variant, form)
+        return
+    opening = open_search(loaded, target, arm, variant)
     folder = (
         _folder(output or RUNS / f"search-{opening.scenario.name}-{arm}-seed-{seed}") if pictures else None
     )

@@ -48,10 +48,34 @@ def learn_into(file: Path | str, new: Experience, by: Contexts = GENERAL, keep_s
     wrote stays as it is, byte for byte. Raises FileError, or LanguageError where the file is wrong.
     """
     path = Path(file)
+    return _written(path, _text_of(path), learned_before(path) + new, by, keep_sums)
+
+
+def learn_anew(
+    file: Path | str, experience: Experience, by: Contexts = GENERAL, keep_sums: bool = True
+) -> Lesson:
+    """Write what an experience teaches into a file, in place of all that the file was learned from before.
+
+    Otherwise as `learn_into`.
+    """
+    path = Path(file)
+    return _written(path, _text_of(path), experience, by, keep_sums)
+
+
+def learned_before(file: Path | str) -> Experience:
+    """Return what a file was learned from, nothing where there is none; FileError where its sums are not kept."""
+    path = Path(file)
+    sums = _sums_of(path, _text_of(path).text)
+    return no_experience() if sums is None else read_experience(sums)
+
+
+def _text_of(path: Path) -> Source:
     before = read_source(path) if path.exists() else Source(path.name, _HEAD, path)
     raise_errors(parse_source(before).diagnostics)
-    old = _sums_of(path, before.text)
-    experience = (no_experience() if old is None else read_experience(old)) + new
+    return before
+
+
+def _written(path: Path, before: Source, experience: Experience, by: Contexts, keep_sums: bool) -> Lesson:
     kept = experience_bytes(experience) if keep_sums else None
     name = None if kept is None else f"{path.stem}.{hashlib.sha256(kept).hexdigest()[:12]}.sums"
     body = learned_text(experience, _declared(before), by)
@@ -60,6 +84,7 @@ def learn_into(file: Path | str, new: Experience, by: Contexts = GENERAL, keep_s
     if kept is not None and name is not None:
         write_whole(path.with_name(name), kept)
     write_whole(path, text)
+    old = _named_sums(path, before.text)
     if old is not None and old.name != name:
         old.unlink(missing_ok=True)
     return Lesson(path, text, experience)
@@ -81,17 +106,22 @@ def without_learned(text: str) -> str:
 
 def _sums_of(path: Path, text: str) -> Path | None:
     """Return the file of sums that a text was learned from; None where nothing was learned yet."""
-    block = _BLOCK.search(text)
-    if block is None:
+    if _BLOCK.search(text) is None:
         return None
-    named = _SUMS.search(block[1])
+    sums = _named_sums(path, text)
     remedy = "learn from all observations into a new file, and import this one there"
-    if named is None:
+    if sums is None:
         raise FileError(path, "was learned without keeping its sums", remedy)
-    sums = path.with_name(Path(named[1]).name)
     if not sums.is_file():
         raise FileError(path, f"was learned from the sums in {sums.name}, which is gone", remedy)
     return sums
+
+
+def _named_sums(path: Path, text: str) -> Path | None:
+    """Return the file of sums that the learned part of a text names, whether it is there or not."""
+    block = _BLOCK.search(text)
+    named = None if block is None else _SUMS.search(block[1])
+    return None if named is None else path.with_name(Path(named[1]).name)
 
 
 def _provenance(experience: Experience, sums: str | None) -> list[str]:
