@@ -35,8 +35,8 @@ def tell_days(
         typer.echo(json.dumps([asdict(day) for day in done], ensure_ascii=False, indent=2))
         return
     kept = days - len(done)
-    again = f"; {kept} days were done before, of which {file.with_suffix('.sqlite')} tells" if kept else ""
-    typer.echo(f"{file}: learned from what {days} days of searches saw{again}")
+    again = f"; days up to {kept} were done before, as {file.with_suffix('.sqlite')} tells" if kept else ""
+    typer.echo(f"{file}: learned from what searches saw, up to day {days}{again}")
 
 
 def _tell(day: Day) -> None:
