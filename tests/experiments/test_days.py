@@ -103,6 +103,6 @@ def test_the_verb_tells_each_day_and_what_was_done_before(unchanged_cell, tmp_pa
     assert first.exit_code == 0, first.output
     assert [line.split()[0] for line in first.output.splitlines()[:3]] == ["day", "1", "2"]
     again = CliRunner().invoke(app, [*words, "3"])
-    assert "2 days were done before" in again.output
+    assert "days up to 2 were done before" in again.output
     last = json.loads(CliRunner().invoke(app, [*words, "4", "--format", "json"]).stdout)
     assert [day["number"] for day in last] == [4]
