@@ -63,6 +63,11 @@ def search(
     """Search for an object once and tell every step: what is believed, where it looks, why, what it saw."""
     loaded = load_scenario(scenario, camera, robot, knowledge)
     if learn is not None:
+        if explain or trial or output is not None:
+            raise typer.BadParameter(
+                "tells a line a day, without pictures: leave out --explain, --trial and --output",
+                param_hint="--learn",
+            )
         tell_days(loaded, learn, days, target, arm, seed, variant, form)
         return
     opening = open_search(loaded, target, arm, variant)

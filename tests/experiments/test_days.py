@@ -106,3 +106,12 @@ def test_the_verb_tells_each_day_and_what_was_done_before(unchanged_cell, tmp_pa
     assert "days up to 2 were done before" in again.output
     last = json.loads(CliRunner().invoke(app, [*words, "4", "--format", "json"]).stdout)
     assert [day["number"] for day in last] == [4]
+
+
+@pytest.mark.parametrize("option", [["--explain"], ["--trial", "1"], ["--output", "x"]])
+def test_what_learning_does_not_heed_is_refused(option, unchanged_cell, tmp_path):
+    refused = CliRunner().invoke(
+        app, ["search", str(unchanged_cell), "--learn", str(tmp_path / "x.qsr"), *option]
+    )
+    assert refused.exit_code == 2
+    assert "--learn" in refused.output
