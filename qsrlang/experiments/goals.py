@@ -96,7 +96,11 @@ class Reminder:
     places: FloatArray
 
     def weights(self, seen: Sequence[Detection]) -> FloatArray | None:
-        """Return the weights (K,) of the places by what is known now, None where the target does not depend on it."""
+        """Return the weights (K,) of the places by what is known now.
+
+        None where nothing seen is new to it, and where it cannot tell the target's place with what was seen: what
+        was believed before then stands.
+        """
         known = load(self.knowledge).with_landmarks(*self.landmarks)
         placed = {landmark.name for landmark in known.landmarks}
         fresh = [one for one in seen if one.kind in known.graph.classes and one.name not in placed]

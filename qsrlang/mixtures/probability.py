@@ -77,8 +77,7 @@ def probability(
     limit: int = MAX_WORLDS,
 ) -> Probability:
     """Return P(formula | given, requirements), as `prove` does; of trees without telling worlds apart."""
-    conditions = conditions_on(graph, objects_of(formula), given)
-    found = _of_tree(graph, formula, conditions, viewer)
+    found = _of_tree(graph, formula, conditions_on(graph, objects_of(formula), given), viewer)
     return found or prove(graph, formula, given, viewer, drawing, limit).answer
 
 

@@ -10,9 +10,8 @@ import math
 from collections.abc import Iterable
 from pathlib import Path
 
-from qsrlang.learning.formats.tables import Rows, csv_rows
+from qsrlang.learning.formats.tables import Rows, csv_rows, or_unsound
 from qsrlang.learning.observations import NOWHERE, Row
-from qsrlang.learning.screening import Unsound
 
 COLUMNS = frozenset(
     {"group", "scene", "object_type", "object_id", "yaw_deg", "aabb_cx", "parent_receptacles"}
@@ -30,15 +29,12 @@ def is_ithor_table(header: Iterable[str]) -> bool:
 def read_ithor_table(path: Path) -> Rows:
     """Yield the objects of every room; `support` is the narrowest receptacle: the last that is not the floor."""
     for where, row in csv_rows(path):
-        yield where, _object(row)
+        yield where, or_unsound(_object, row)
 
 
-def _object(row: Row) -> Row | Unsound:
-    try:
-        yaw = float(row["yaw_deg"])
-        sizes = {name: float(row[f"aabb_{name}"]) for name in ("cx", "cy", "cz", "sx", "sy", "sz")}
-    except (KeyError, TypeError, ValueError):
-        return Unsound("with cells that are no numbers")
+def _object(row: Row) -> Row:
+    yaw = float(row["yaw_deg"])
+    sizes = {name: float(row[f"aabb_{name}"]) for name in ("cx", "cy", "cz", "sx", "sy", "sz")}
     length, width = _box(yaw, sizes["sz"], sizes["sx"])
     return {
         "time": 0.0,

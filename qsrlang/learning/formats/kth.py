@@ -8,16 +8,15 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from datetime import datetime
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
 from qsrlang.errors import FileError
-from qsrlang.learning.formats.tables import Rows, csv_rows
+from qsrlang.learning.formats.tables import Rows, csv_rows, or_unsound
 from qsrlang.learning.observations import Row
-from qsrlang.learning.screening import Unsound
 
 COLUMNS = frozenset(
     {"desk", "scene", "date", "part", "desk_length", "desk_width", "object", "class", "x", "y", "yaw"}
@@ -34,8 +33,8 @@ def read_kth_table(path: Path) -> Rows:
     for where, row in csv_rows(path):
         if row["scene"] != scene:
             scene = row["scene"]
-            yield where, _or_unsound(_desk, row)
-        yield where, _or_unsound(_object, row)
+            yield where, or_unsound(_desk, row)
+        yield where, or_unsound(_object, row)
 
 
 def read_kth_xml(path: Path) -> Rows:
@@ -49,13 +48,13 @@ def read_kth_xml(path: Path) -> Rows:
         "part": "",
         "source": path.name,
     } | size
-    yield path.name, _or_unsound(_desk, shared)
+    yield path.name, or_unsound(_desk, shared)
     for number, one in enumerate(scenario.iterfind("allObjects/object"), 1):
         name = one.findtext("name") or ""
         row: dict[str, Any] = {"object": name, "class": _INSTANCE.sub("", name)}
         row |= {axis: one.findtext(f"pose/{axis}") for axis in ("x", "y", "z", "yaw")}
         row |= {side: one.findtext(f"dimensions/{side}") for side in ("length", "width", "height")}
-        yield f"{path.name}, object {number}", _or_unsound(_object, shared | row)
+        yield f"{path.name}, object {number}", or_unsound(_object, shared | row)
 
 
 def _parsed(path: Path) -> ElementTree.Element:
@@ -73,13 +72,6 @@ def _parsed(path: Path) -> ElementTree.Element:
             path, f"holds <{scenario.tag}>", "name a KTH-3D-TOTAL annotation, which holds <scenario>"
         )
     return scenario
-
-
-def _or_unsound(make: Callable[[Row], Row], row: Row) -> Row | Unsound:
-    try:
-        return make(row)
-    except (KeyError, TypeError, ValueError):
-        return Unsound("with cells that are no numbers")
 
 
 def _object(row: Row) -> Row:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -42,6 +42,14 @@ def csv_rows(path: Path) -> Iterator[tuple[str, dict[str, str]]]:
         except csv.Error as error:
             problem = f"cannot be read from line {reader.line_num} on ({error})"
             raise FileError(path, problem, "mend that line, or export the table anew") from None
+
+
+def or_unsound(make: Callable[[Row], Row], row: Row) -> Row | Unsound:
+    """Return what is made of a row; Unsound where a number is missing or is none."""
+    try:
+        return make(row)
+    except (KeyError, TypeError, ValueError):
+        return Unsound("with cells that are no numbers")
 
 
 def read_json_lines(path: Path) -> Rows:
