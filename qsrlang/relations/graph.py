@@ -127,7 +127,8 @@ Pair: TypeAlias = tuple[str, str]
 
 def pair_of(constraint: Constraint, node_of: Callable[[str], str]) -> Pair:
     """Return (referent, relatum) by their classes; two relata make one: `between(X, A, B)` gives (X, "A and B")."""
-    return node_of(constraint.referent), " and ".join(node_of(name) for name in constraint.relata)
+    referent, relatum = node_of(constraint.referent), node_of(constraint.relatum)
+    return referent, relatum if constraint.towards is None else f"{relatum} and {node_of(constraint.towards)}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,6 +172,7 @@ class RelationGraph:
     _choices_of: Mapping[str, tuple[Choice, ...]] = field(init=False, repr=False, compare=False)
     _instances_of: Mapping[str, tuple[Landmark, ...]] = field(init=False, repr=False, compare=False)
     _kinds: Mapping[str, str] = field(init=False, repr=False, compare=False)
+    _nodes: Mapping[str, str] = field(init=False, repr=False, compare=False)
     evidence: tuple[str, ...] = field(init=False, repr=False, compare=False)
     _derived: dict[object, object] = field(default_factory=dict, init=False, repr=False, compare=False)
 
@@ -185,6 +187,7 @@ class RelationGraph:
                 instances[name].append(landmark)
         kinds = {**self.roles, **{landmark.name: landmark.kind for landmark in reversed(self.landmarks)}}
         object.__setattr__(self, "_kinds", kinds)
+        object.__setattr__(self, "_nodes", {**kinds, **{role: role for role in self.roles}})
         object.__setattr__(self, "evidence", tuple(sorted(self._referents() & instances.keys())))
         object.__setattr__(self, "_choices_of", {name: tuple(found) for name, found in choices.items()})
         object.__setattr__(self, "_instances_of", {name: tuple(found) for name, found in instances.items()})
@@ -213,7 +216,7 @@ class RelationGraph:
 
     def node_of(self, name: str) -> str:
         """Return what statements about a name are about: a role is its own, a landmark counts as its class."""
-        return name if name in self.roles else self.class_of(name)
+        return self._nodes.get(name, name)
 
     def pair_of(self, constraint: Constraint) -> Pair:
         """Return the ordered pair that a constraint speaks of, as choices govern it."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,9 +13,6 @@ from qsrlang.geometry.angles import TURN, rotation, unit
 from qsrlang.mixtures.densities.conditional import Conditional, Turning
 from qsrlang.mixtures.densities.standpoint import Standpoint
 from qsrlang.relations.graph import Constraint, RelationGraph
-
-if TYPE_CHECKING:
-    pass
 
 MIN_SIDE = 1e-3
 

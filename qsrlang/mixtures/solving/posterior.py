@@ -6,18 +6,17 @@ import math
 from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
-from typing import NamedTuple
 
 import numpy as np
 
-from qsrlang.arrays import BoolArray, FloatArray, IntArray
+from qsrlang.arrays import FloatArray, IntArray
 from qsrlang.geometry.pose import Pose2
-from qsrlang.mixtures.densities.stated import make_conditional
+from qsrlang.mixtures.solving.factors import Factors
 from qsrlang.mixtures.solving.linear import Factor, Linear
+from qsrlang.mixtures.solving.paths import Paths
 from qsrlang.mixtures.solving.system import DENSE, Solution, solve
-from qsrlang.mixtures.worlds.layout import Layout, compact_anchor
-from qsrlang.mixtures.worlds.plans import Plan, Step, seats_read
+from qsrlang.mixtures.worlds.layout import Layout
+from qsrlang.mixtures.worlds.plans import Plan, Step
 from qsrlang.mixtures.worlds.supports import Seat
 from qsrlang.relations.graph import RelationGraph
 
@@ -36,14 +35,14 @@ class Posterior:
 
     layout: Layout
     mean: FloatArray
-    joint: FloatArray | Solution
+    joint: FloatArray | Solution | Paths
     log_evidence: float = 0.0
 
     def covariance(self, columns: IntArray) -> FloatArray:
         """Return the joint covariance (K, K) of some columns."""
-        if isinstance(self.joint, Solution):
-            return self.joint.covariance(columns)
-        return self.joint[np.ix_(columns, columns)]
+        if isinstance(self.joint, np.ndarray):
+            return self.joint[np.ix_(columns, columns)]
+        return self.joint.covariance(columns)
 
     def marginal(self, *seats: Seat) -> tuple[FloatArray, FloatArray]:
         """Return mean (2 K,) and covariance (2 K, 2 K) of K places together."""
@@ -71,52 +70,54 @@ def posteriors_of(graph: RelationGraph, plans: Sequence[Plan], viewer: Pose2 | N
 
 
 def _together(graph: RelationGraph, plans: Sequence[Plan], viewer: Pose2 | None) -> list[Posterior]:
-    layout, fused = plans[0].layout, plans[0].fused
-    free = layout.free
-    making = _Making(graph, viewer, _orientation(plans[0], viewer))
-    factors = [
-        _factors([plan.steps[at] for plan in plans], layout, free, making)
-        for at in range(len(plans[0].steps))
-    ]
-    forward = _forward(plans[0].steps, factors, layout, len(plans))
-    if forward.joints is not None and not fused:
+    steps, layout, fused = plans[0].steps, plans[0].layout, plans[0].fused
+    making = Factors(graph, viewer, _orientation(plans[0], viewer), layout)
+    said = [making.of([plan.steps[at] for plan in plans]) for at in range(len(steps))]
+    told = [[each[row] for each in said] for row in range(len(plans))]
+    if (fused or layout.size > DENSE) and not any(_needs_joint(one) for each in said for one in each):
+        return [_on_paths(graph, steps, layout, fused, one) for one in told]
+    forward = _forward(steps, said, layout, len(plans))
+    if not fused:
         return [Posterior(layout, *one) for one in zip(forward.means, forward.joints, strict=True)]
-    return [
-        _solved(graph, layout, fused, [said[row] for said in factors], *forward.of(row))
-        for row in range(len(plans))
-    ]
+    return [_solved(graph, layout, fused, one, *forward.of(row)) for row, one in enumerate(told)]
 
 
-class _Making(NamedTuple):
-    """What all steps of a world are said in."""
-
-    graph: RelationGraph
-    viewer: Pose2 | None
-    orientation: float
+def _needs_joint(factor: Factor) -> bool:
+    """Return whether a factor's equation depends on how places, not a heading alone, are distributed together."""
+    return factor.bends and factor.turning is None
 
 
-def _factors(steps: Sequence[Step], layout: Layout, free: BoolArray, making: _Making) -> list[Factor]:
-    """Return what the same step says in each of several plans; the same constraint gives the same factor."""
-    seats = seats_read(steps[0])
-    columns = np.array([column for seat in seats for column in layout.pose(seat)])
-    referent, anchor = np.array(layout.place(steps[0].referent)), partial(compact_anchor, seats)
-    distinct = {id(step.constraint): step for step in steps}
-    is_free = free[columns]
-    made = {}
-    for key, step in distinct.items():
-        said = make_conditional(making.graph, step, anchor, making.viewer)
-        turning = said.turning(float(layout.mean[columns[2]]), not is_free[2])
-        bends = bool(is_free.any() if turning is None else is_free[2] and not turning.fixed)
-        made[key] = Factor(referent, columns, said, turning, bends, making.orientation)
-    return [made[id(step.constraint)] for step in steps]
+def _on_paths(
+    graph: RelationGraph, steps: Sequence[Step], layout: Layout, fused: int, factors: Sequence[Factor]
+) -> Posterior:
+    """Return the posterior of a plan none of whose equations needs to know a joint covariance."""
+    equations = equations_ahead(factors, layout)
+    placing = [at for at, step in enumerate(steps) if step.places]
+    paths = Paths.of([factors[at] for at in placing], [equations[at] for at in placing], layout)
+    if fused:
+        return _solved(graph, layout, fused, factors, paths.mean(), equations)
+    return Posterior(layout, paths.mean(), paths)
+
+
+def equations_ahead(factors: Sequence[Factor], layout: Layout) -> list[Linear]:
+    """Return the equations of factors by what is known before any step; those that say the same are one."""
+    found: dict[tuple[int, int], Linear] = {}
+    equations = []
+    for factor in factors:
+        read = factor.columns
+        key = (id(factor.turning or factor), read.item(2))
+        if key not in found:
+            found[key] = factor.linearised(layout.mean[read], np.diag(layout.variance[read]))
+        equations.append(found[key])
+    return equations
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Forward:
-    """Means (W, n) and covariances (W, n, n), or None, of what W plans place, and each step's equations (W, …)."""
+    """Means (W, n) and covariances (W, n, n) of what W plans place, and each step's equations (W, …)."""
 
     means: FloatArray
-    joints: FloatArray | None
+    joints: FloatArray
     equations: tuple[Linear, ...]
 
     def of(self, row: int) -> tuple[FloatArray, list[Linear]]:
@@ -127,28 +128,21 @@ class _Forward:
 def _forward(
     steps: Sequence[Step], factors: Sequence[Sequence[Factor]], layout: Layout, count: int
 ) -> _Forward:
-    """Place what the steps place, one after the other; what only adds to that is passed over.
-
-    There are no covariances where no step needs them and they will be found otherwise.
-    """
+    """Place what the steps place, one after the other; what only adds to that is passed over."""
     means = np.tile(layout.mean, (count, 1))
-    is_needed = layout.size <= DENSE and all(step.places for step in steps)
-    is_needed = is_needed or any(one.bends and one.turning is None for said in factors for one in said)
-    joints = np.tile(np.diag(layout.variance), (count, 1, 1)) if is_needed else None
+    joints = np.tile(np.diag(layout.variance), (count, 1, 1))
     equations = []
     for step, said in zip(steps, factors, strict=True):
         read, placed = said[0].columns, said[0].referent
-        local = np.diag(layout.variance[read])[None] if joints is None else joints[:, read[:, None], read]
-        equation = _equations(said, means[:, read], local)
+        equation = _equations(said, means[:, read], joints[:, read[:, None], read])
         equations.append(equation)
         if not step.places:
             continue
         means[:, placed] = (equation.slope @ means[:, read, None])[..., 0] + equation.offset
-        if joints is not None:
-            cross = equation.slope @ joints[:, read]
-            joints[:, placed], joints[:, :, placed] = cross, cross.transpose(0, 2, 1)
-            own = cross[:, :, read] @ equation.slope.transpose(0, 2, 1) + equation.covariance
-            joints[:, placed[:, None], placed] = own
+        cross = equation.slope @ joints[:, read]
+        joints[:, placed], joints[:, :, placed] = cross, cross.transpose(0, 2, 1)
+        own = cross[:, :, read] @ equation.slope.transpose(0, 2, 1) + equation.covariance
+        joints[:, placed[:, None], placed] = own
     return _Forward(means, joints, tuple(equations))
 
 
@@ -160,7 +154,6 @@ def _equations(said: Sequence[Factor], means: FloatArray, covariances: FloatArra
     for row, factor in enumerate(said):
         rows[id(factor)].append(row)
     count, width = means.shape
-    covariances = np.broadcast_to(covariances, (count, width, width))
     slopes, offsets, noises = np.empty((count, 2, width)), np.empty((count, 2)), np.empty((count, 2, 2))
     for chosen in rows.values():
         one = said[chosen[0]].linearised_each(means[chosen], covariances[chosen])

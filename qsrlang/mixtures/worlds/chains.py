@@ -11,15 +11,13 @@ from qsrlang.relations.graph import Constraint, RelationGraph
 
 def placed_by(graph: RelationGraph, name: str) -> tuple[str, ...]:
     """Return the classes and roles that statements place a class or role by, sorted; a class also by its roles."""
-    constraints = [
-        constraint
-        for choice in graph.choices_for(name)
-        for alternative in choice.alternatives
-        for constraint in alternative.constraints
-        if graph.node_of(constraint.referent) == name
-    ]
-    relata = {graph.node_of(relatum) for constraint in constraints for relatum in constraint.relata}
-    return tuple(sorted((relata | set(instances_in_roles(graph, name))) - {name}))
+    found = set(instances_in_roles(graph, name))
+    for choice in graph.choices_for(name):
+        for alternative in choice.alternatives:
+            for one in alternative.constraints:
+                if graph.node_of(one.referent) == name:
+                    found.update(map(graph.node_of, one.relata))
+    return tuple(sorted(found - {name}))
 
 
 def chain_starts(graph: RelationGraph, target: str) -> tuple[str, ...]:

@@ -124,22 +124,23 @@ class Draft:
 
     def _open_choice(self, graph: RelationGraph, name: str) -> Choice | None:
         for choice in graph.choices_for(name):
-            if id(choice) not in self.closed and any(
-                pair[0] == name and pair not in self.covered for pair in choice.governs
-            ):
-                return choice
+            if id(choice) in self.closed:
+                continue
+            for pair in choice.governs:
+                if pair[0] == name and pair not in self.covered:
+                    return choice
         return None
 
     def _alternatives(self, graph: RelationGraph, choice: Choice) -> list[Decision]:
         alternatives = self._compatible(graph, choice)
-        rest = 1.0 - sum(alternative.share for alternative in alternatives)
+        rest = 1.0 - sum([alternative.share for alternative in alternatives])
         decisions: list[Decision] = [(rest, _elsewhere(choice), choice)] if rest > MIN_SHARE else []
-        return [*decisions, *((one.share, _take(graph, choice, one), one) for one in alternatives)]
+        return [*decisions, *[(one.share, _take(graph, choice, one), one) for one in alternatives]]
 
     def _compatible(self, graph: RelationGraph, choice: Choice) -> tuple[Alternative, ...]:
         """Return the alternatives; scenes that were already passed over for another are left out if any remain."""
         if choice.authority is not Authority.SCENE:
-            return tuple(one for one in choice.alternatives if one.share > 0.0)
+            return tuple([one for one in choice.alternatives if one.share > 0.0])
         free = [
             one
             for one in choice.alternatives
@@ -218,11 +219,11 @@ def _stand_in(name: str, candidate: str) -> Callable[[Draft], None]:
 
 def _take(graph: RelationGraph, choice: Choice, alternative: Alternative) -> Callable[[Draft], None]:
     def act(draft: Draft) -> None:
-        pairs = [graph.pair_of(constraint) for constraint in alternative.constraints]
-        for constraint, pair in zip(alternative.constraints, pairs, strict=True):
+        spoken = [(graph.pair_of(constraint), constraint) for constraint in alternative.constraints]
+        for pair, constraint in spoken:
             if pair not in draft.covered:
                 draft.add(constraint)
-        draft.covered.update(pairs)
+        draft.covered.update([pair for pair, _ in spoken])
         draft.closed.add(id(choice))
 
     return act

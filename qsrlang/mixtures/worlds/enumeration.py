@@ -80,12 +80,10 @@ def enumerate_worlds(
 def _world(draft: Draft) -> World:
     """Return the world of a complete draft, with the role in the place of every class that is one."""
     names = draft.aliases
-    constraints = tuple(
-        draft.constraints if not names else (_renamed(one, names) for one in draft.constraints)
-    )
+    constraints = [_renamed(one, names) for one in draft.constraints] if names else draft.constraints
     return World(
         draft.weight,
-        constraints,
+        tuple(constraints),
         tuple(draft.bindings.items()),
         tuple(names.items()),
         tuple(draft.absent),

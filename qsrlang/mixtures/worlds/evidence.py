@@ -67,10 +67,10 @@ def _is_fused(graph: RelationGraph, name: str) -> bool:
     """Return whether several constraints may hold of a thing that no landmark places."""
     if graph.instances_of(name) or instances_in_roles(graph, name):
         return False
-    most = (
-        max(
-            (sum(one.referent == name for one in each.constraints) for each in choice.alternatives), default=0
-        )
-        for choice in graph.choices_for(name)
-    )
-    return sum(most) > 1
+    return sum(_most_said(choice, name) for choice in graph.choices_for(name)) > 1
+
+
+def _most_said(choice: Choice, name: str) -> int:
+    """Return how many constraints a choice may put on a thing at once."""
+    counts = [[one.referent for one in each.constraints].count(name) for each in choice.alternatives]
+    return max(counts, default=0)

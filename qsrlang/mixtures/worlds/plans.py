@@ -114,11 +114,13 @@ def plan_worlds(
     patterns: dict[object, _Pattern] = {}
     plans = []
     for world in worlds:
-        pairs = tuple((one.referent, one.relatum, one.towards, in_region(one)) for one in world.constraints)
+        pairs = tuple([(one.referent, one.relatum, one.towards, in_region(one)) for one in world.constraints])
         key = (pairs, world.bindings, world.aliases, world.absent, world.telling)
-        if key not in patterns:
+        if key in patterns:
+            plans.append(patterns[key].filled(world.constraints))
+        else:
             patterns[key] = _pattern(graph, world, targets, asked)
-        plans.append(patterns[key].filled(world.constraints))
+            plans.append(patterns[key].plan)
     return tuple(plans)
 
 
@@ -153,9 +155,9 @@ def _pattern(graph: RelationGraph, world: World, targets: tuple[str, ...], asked
 def seats_read(*steps: Step) -> tuple[Seat, ...]:
     """Return the things that steps depend on, relata first."""
     read = [step.relatum for step in steps]
-    read += [step.second for step in steps if step.second]
-    read += [step.support.seat for step in steps if step.support]
-    return tuple(dict.fromkeys(read))
+    read += [step.second for step in steps if step.second is not None]
+    read += [step.support.seat for step in steps if step.support is not None]
+    return tuple(dict.fromkeys(read)) if len(read) > 1 else tuple(read)
 
 
 def asked_step(graph: RelationGraph, world: World, seats: Mapping[str, Seat], atom: Atom) -> Step | None:
@@ -182,7 +184,7 @@ class _Order:
 
     def add(self, constraint: Constraint, seats: Mapping[str, Seat]) -> None:
         """Take in a constraint, ready or not."""
-        missing = [name for name in dict.fromkeys(constraint.relata) if name not in seats]
+        missing = {name for name in constraint.relata if name not in seats}
         self.missing[id(constraint)] = len(missing)
         for name in missing:
             self.waiting[name].append(constraint)
@@ -246,9 +248,9 @@ def _helpful(world: World, targets: tuple[str, ...]) -> tuple[Constraint, ...]:
     absent = {world.named(name) for name in world.absent}
     known = {name for name, _ in world.bindings} - set(world.telling)
     useful = needed - absent - known
-    return tuple(sorted((one for one in world.constraints if one.referent in useful), key=_rank))
+    return tuple(sorted([one for one in world.constraints if one.referent in useful], key=_rank))
 
 
 def _rank(constraint: Constraint) -> tuple[object, ...]:
-    names = tuple((atom.relation.name, atom.frame.value) for atom in constraint.atoms)
+    names = tuple([(atom.relation.name, atom.frame.value) for atom in constraint.atoms])
     return (constraint.referent, constraint.relata, in_region(constraint), names, constraint.part)

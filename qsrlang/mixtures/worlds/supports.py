@@ -92,8 +92,10 @@ def _stated_support(
 
 def _usual_support(graph: RelationGraph, constraint: Constraint, root: Landmark) -> Support | None:
     """Return the surface of the class that referent or relatum stands `on`, if the root landmark is on it."""
-    classes = [graph.classes[graph.class_of(name)] for name in (constraint.referent, constraint.relatum)]
-    wanted = classes[0].on or classes[1].on
+    wanted = (
+        graph.classes[graph.class_of(constraint.referent)].on
+        or graph.classes[graph.class_of(constraint.relatum)].on
+    )
     if wanted is None or graph.classes[wanted].width == 0.0:
         return None
     for landmark in graph.instances_of(wanted):

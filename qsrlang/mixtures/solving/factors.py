@@ -1,0 +1,64 @@
+"""From steps to factors; what several steps say in the same words, of things of the same sizes, is found once."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import partial
+
+import numpy as np
+
+from qsrlang.geometry.pose import Pose2
+from qsrlang.mixtures.densities.conditional import Conditional, Turning
+from qsrlang.mixtures.densities.stated import make_conditional
+from qsrlang.mixtures.solving.linear import Factor
+from qsrlang.mixtures.worlds.layout import Layout, compact_anchor
+from qsrlang.mixtures.worlds.plans import Step, seats_read
+from qsrlang.mixtures.worlds.supports import Seat, in_region
+from qsrlang.relations.graph import RelationGraph
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Factors:
+    """Makes the factors of steps in plans of one layout; `orientation` [rad] is a direction that turns with them."""
+
+    graph: RelationGraph
+    viewer: Pose2 | None
+    orientation: float
+    layout: Layout
+    _said: dict[object, tuple[Conditional, Turning | None]] = field(default_factory=dict)
+
+    def of(self, steps: Sequence[Step]) -> list[Factor]:
+        """Return what the same step says in each of several plans; the same constraint gives the same factor."""
+        seats = seats_read(steps[0])
+        read = [column for seat in seats for column in self.layout.pose(seat)]
+        columns, referent = np.array(read), np.array(self.layout.place(steps[0].referent))
+        made = {}
+        for key, step in {id(step.constraint): step for step in steps}.items():
+            said, turning = self._told(step, seats, read[2])
+            bends = self._is_free(*read) if turning is None else self._is_free(read[2]) and not turning.fixed
+            made[key] = Factor(referent, columns, said, turning, bends, self.orientation)
+        return [made[id(step.constraint)] for step in steps]
+
+    def _is_free(self, *columns: int) -> bool:
+        return any(self.layout.free.item(column) for column in columns)
+
+    def _told(self, step: Step, seats: tuple[Seat, ...], heading: int) -> tuple[Conditional, Turning | None]:
+        """Return what a step says, and that in the frame of its relatum, whose heading is in a column, if it can be."""
+        key = self._words(step)
+        if key not in self._said:
+            said = make_conditional(self.graph, step, partial(compact_anchor, seats), self.viewer)
+            turning = said.turning(float(self.layout.mean[heading]), not self._is_free(heading))
+            self._said[key] = said, turning
+        return self._said[key]
+
+    def _words(self, step: Step) -> object:
+        """Return what tells apart what steps say: relations, sizes and root; else the constraint itself."""
+        said = step.constraint
+        if step.second is not None or step.support is not None or said.fit is not None or in_region(said):
+            return id(said)
+        classes, class_of = self.graph.classes, self.graph.class_of
+        referent, relatum = classes[class_of(said.referent)], classes[class_of(said.relatum)]
+        words = [id(word) for one in said.atoms for word in (one.relation, one.frame)]
+        sizes = (referent.width, referent.depth, relatum.width, relatum.depth)
+        return (*words, *sizes, said.part, step.relatum.root.name)
