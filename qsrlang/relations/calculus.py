@@ -28,6 +28,9 @@ class Relation:
     arity: int = 2
     components: int = 1
 
+    def __hash__(self) -> int:
+        return hash(self.name)
+
     @property
     def terms(self) -> tuple[tuple[float, Relation], ...]:
         """The relation as exclusive alternatives with shares: one for each part of a `mix` of angles."""

@@ -18,6 +18,7 @@ from qsrlang.mixtures.densities.density import PolarDensity
 from qsrlang.mixtures.densities.stance import Boxes, Stance, half_box
 from qsrlang.mixtures.densities.standpoint import Standpoint
 from qsrlang.mixtures.worlds.supports import Support
+from qsrlang.relations.calculus import Relation
 from qsrlang.relations.graph import AtomicRelation, Constraint, RelationGraph
 
 
@@ -61,20 +62,21 @@ class PolarConditional:
 
     def turning(self, heading: float, is_certain: bool) -> Turning | None:
         """Return the moments in the relatum's frame, unless they depend on a place: of a support, viewer or relatum."""
-        if self._is_fixed:
+        if self.is_fixed:
             return _turning(self.density, (0.5 * np.pi,) * len(self.frames), self.part)._replace(fixed=True)
         axes = self._turning_axes(heading, is_certain)
         return None if axes is None else _turning(self.density, axes, self.part)
 
     @property
-    def _is_fixed(self) -> bool:
+    def is_fixed(self) -> bool:
         """Whether all axes are the map's, and no box turns with the relatum."""
         is_alone = self.standpoint.second is None and self.density.support is None
         return is_alone and self.density.boxes.are_points and set(self.frames) == {Frame.ABSOLUTE}
 
     def turns(self, heading: float, is_certain: bool) -> bool:
-        """Return whether it is the same in the relatum's frame, wherever that is."""
-        return self._is_fixed or self._turning_axes(heading, is_certain) is not None
+        """Return whether it is the same in the relatum's frame, wherever that is, as far as its heading is certain."""
+        is_fixed = is_certain and self.is_fixed
+        return is_fixed or self._turning_axes(heading, is_certain) is not None
 
     def _turning_axes(self, heading: float, is_certain: bool) -> tuple[float, ...] | None:
         if self.standpoint.second or self.density.support:
@@ -224,25 +226,38 @@ def polar_density(
     graph: RelationGraph, constraint: Constraint, support: Support | None
 ) -> tuple[PolarDensity, tuple[Frame, ...]]:
     """Return the product of a constraint's atoms as one polar density, with the frame of each angle factor."""
+    words = tuple([(atom.relation, frame_of(constraint, atom)) for atom in constraint.atoms])
     outline = None if support is None else support.outline
-    return _product(constraint, _boxes(graph, constraint, support), outline, graph.reach)
+    boxes = _boxes(graph, constraint, support)
+    return density_of(words, boxes, outline, graph.reach, constraint.statement.text)
 
 
-@lru_cache(maxsize=4096)
-def _product(
-    constraint: Constraint, boxes: Boxes, outline: ConvexPolygon | None, reach: float
+def density_of(
+    words: tuple[tuple[Relation, Frame], ...],
+    boxes: Boxes,
+    outline: ConvexPolygon | None,
+    reach: float,
+    what: str,
 ) -> tuple[PolarDensity, tuple[Frame, ...]]:
-    turning = [atom for atom in constraint.atoms if atom.relation.angle is not None]
-    frames = tuple(frame_of(constraint, atom) for atom in turning) or (Frame.RELATIVE,)
-    angles = tuple(bump(atom.relation.angle) for atom in turning) or (bump(None),)
-    distances = tuple(a.relation.distance for a in constraint.atoms if a.relation.distance is not None)
-    hands = tuple(hand(frame) for frame in frames)
-    density = PolarDensity(angles, hands, distances, boxes, outline, reach, constraint.statement.text)
-    return density, frames
+    """Return the product of relations in frames as one polar density, with the frame of each angle factor.
+
+    `what` names it in errors.
+    """
+    turning = [(relation.angle, frame) for relation, frame in words if relation.angle is not None]
+    frames = tuple([frame for _, frame in turning]) or (Frame.RELATIVE,)
+    angles = tuple([bump(angle) for angle, _ in turning]) or (bump(None),)
+    distances = tuple([relation.distance for relation, _ in words if relation.distance is not None])
+    hands = tuple([hand(frame) for frame in frames])
+    return PolarDensity(angles, hands, distances, boxes, outline, reach, what), frames
 
 
 def _boxes(graph: RelationGraph, constraint: Constraint, support: Support | None) -> Boxes:
     names = (constraint.referent, constraint.relatum, constraint.towards or constraint.relatum)
-    classes = (graph.classes[graph.class_of(name)] for name in names)
-    referent, relatum, second = (half_box(kind.width, kind.depth) for kind in classes)
+    referent, relatum, second = (half_box_of(graph, name) for name in names)
     return Boxes(referent, relatum, support is not None and support.is_relatum, second)
+
+
+def half_box_of(graph: RelationGraph, name: str) -> tuple[float, float]:
+    """Return (half length, half width) [m] of what a name stands for."""
+    kind = graph.classes[graph.class_of(name)]
+    return half_box(kind.width, kind.depth)

@@ -10,11 +10,11 @@ import numpy as np
 
 from qsrlang.geometry.pose import Pose2
 from qsrlang.mixtures.densities.conditional import Conditional, Turning
-from qsrlang.mixtures.densities.stated import make_conditional
+from qsrlang.mixtures.densities.stated import Words, make_conditional
 from qsrlang.mixtures.solving.linear import Factor
 from qsrlang.mixtures.worlds.layout import Layout, compact_anchor
 from qsrlang.mixtures.worlds.plans import Step, seats_read
-from qsrlang.mixtures.worlds.supports import Seat, in_region
+from qsrlang.mixtures.worlds.supports import Seat
 from qsrlang.relations.graph import RelationGraph
 
 
@@ -45,20 +45,9 @@ class Factors:
 
     def _told(self, step: Step, seats: tuple[Seat, ...], heading: int) -> tuple[Conditional, Turning | None]:
         """Return what a step says, and that in the frame of its relatum, whose heading is in a column, if it can be."""
-        key = self._words(step)
+        key = Words.of(self.graph, step) or id(step.constraint), step.relatum.root.name
         if key not in self._said:
             said = make_conditional(self.graph, step, partial(compact_anchor, seats), self.viewer)
             turning = said.turning(float(self.layout.mean[heading]), not self._is_free(heading))
             self._said[key] = said, turning
         return self._said[key]
-
-    def _words(self, step: Step) -> object:
-        """Return what tells apart what steps say: relations, sizes and root; else the constraint itself."""
-        said = step.constraint
-        if step.second is not None or step.support is not None or said.fit is not None or in_region(said):
-            return id(said)
-        classes, class_of = self.graph.classes, self.graph.class_of
-        referent, relatum = classes[class_of(said.referent)], classes[class_of(said.relatum)]
-        words = [id(word) for one in said.atoms for word in (one.relation, one.frame)]
-        sizes = (referent.width, referent.depth, relatum.width, relatum.depth)
-        return (*words, *sizes, said.part, step.relatum.root.name)

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache, partial, reduce
 from itertools import product
 
 import numpy as np
 
-from qsrlang.arrays import BoolArray, FloatArray, IntArray
+from qsrlang.arrays import BoolArray, FloatArray
+from qsrlang.errors import NoRoomError
 from qsrlang.geometry.pose import Pose2
 from qsrlang.language.syntax import And, Atom, Formula, Not, Or
 from qsrlang.mixtures.densities.conditional import PolarConditional
-from qsrlang.mixtures.densities.sectors import arcs_of
-from qsrlang.mixtures.densities.stated import make_conditional
+from qsrlang.mixtures.densities.sectors import Arcs, arcs_of
+from qsrlang.mixtures.densities.stated import Words, make_conditional
 from qsrlang.mixtures.densities.windows import Window, share_inside
 from qsrlang.mixtures.solving.linear import cubature
 from qsrlang.mixtures.solving.weighing import Solved
@@ -23,6 +24,7 @@ from qsrlang.mixtures.worlds.enumeration import World
 from qsrlang.mixtures.worlds.layout import Layout, compact_anchor
 from qsrlang.mixtures.worlds.plans import Plan, Step, asked_step, seats_read
 from qsrlang.mixtures.worlds.supports import Seat
+from qsrlang.relations.calculus import Relation
 from qsrlang.relations.graph import RelationGraph
 
 MAX_ATOMS = 10
@@ -38,15 +40,10 @@ class Asked:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Pair:
-    """One density that was stated of a pair, the windows of atoms on it, and the columns (K,) of what they read.
+    """What is asked of a pair that a step places, and the `table` (2, …, 2) of it, where that is always the same."""
 
-    There is one `table` of them (2, …, 2) where it is the same in every state: where it turns with a heading that is
-    certain, or nothing that it reads is open.
-    """
-
-    density: PolarConditional
-    windows: tuple[Window, ...]
-    columns: IntArray
+    placing: Step
+    asked: Asked
     table: FloatArray | None
 
 
@@ -77,55 +74,85 @@ class TruthTables:
         table, exact = np.ones((1,) * len(self._atoms)), True
         for one in asked:
             pair = self._pair(solved, one, placing)
-            if pair is None or (pair.table is None and len(asked) > 1):
+            shares = None if pair is None else pair.table
+            if pair is not None and shares is None and len(asked) == 1:
+                shares, exact = self._averaged(pair, solved), False
+            if shares is None:
                 return None
-            exact &= pair.table is not None
-            shares = _averaged(pair, solved) if pair.table is None else pair.table
             table = table * along(shares, one.numbers, len(self._atoms))
         placed = {number for one in asked for number in one.numbers}
-        for number in set(range(len(self._atoms))) - placed:
-            table = table * along(np.array([1.0, 0.0]), (number,), len(self._atoms))
-        return table, exact
+        unplaced = set(range(len(self._atoms))) - placed
+        return table * nothing_holds(unplaced, len(self._atoms)), exact
 
     def asked(self, world: World, plan: Plan) -> tuple[Asked, ...]:
         """Return what is asked in worlds of one layout, pair by pair."""
         layout = plan.layout
         if id(layout) not in self._asked:
-            groups: dict[tuple[Seat, Seat], list[tuple[int, Step]]] = defaultdict(list)
-            for number, atom in enumerate(self._atoms):
-                step = asked_step(self._graph, world, plan.seats, atom)
-                if step is not None:
-                    groups[step.referent, step.relatum].append((number, step))
-            asked = tuple(Asked(*zip(*group, strict=True)) for group in groups.values())
-            self._asked[id(layout)] = layout, asked
+            self._asked[id(layout)] = layout, self.asked_of(world, plan.seats)
         return self._asked[id(layout)][1]
 
+    def asked_of(self, world: World, seats: Mapping[str, Seat]) -> tuple[Asked, ...]:
+        """Return what is asked of things that have seats, pair by pair."""
+        groups: dict[tuple[Seat, Seat], list[tuple[int, Step]]] = defaultdict(list)
+        for number, atom in enumerate(self._atoms):
+            step = asked_step(self._graph, world, seats, atom)
+            if step is not None:
+                groups[step.referent, step.relatum].append((number, step))
+        return tuple([Asked(*zip(*group, strict=True)) for group in groups.values()])
+
     def _pair(self, solved: Solved, asked: Asked, placing: Mapping[Seat, Step]) -> Pair | None:
+        """Return what is asked of a pair; None where more than one polar density tells of it."""
         step = placing.get(asked.steps[0].referent)
         if step is None or step.relatum != asked.steps[0].relatum or step.second or asked.steps[0].second:
             return None
         key = (id(solved.plan.layout), id(step.constraint), asked.numbers[0])
         if key not in self._pairs:
-            self._pairs[key] = self.read(solved.plan.layout, step, asked)
+            is_polar = self._polar(step, asked) is not None
+            self._pairs[key] = Pair(step, asked, self.table(step, asked)) if is_polar else None
         return self._pairs[key]
 
-    def read(self, layout: Layout, placing: Step, asked: Asked) -> Pair | None:
-        """Return what the density of a step says of the atoms asked of its pair; None where it is not a polar one."""
-        seats = seats_read(placing, *asked.steps)
-        anchor = partial(compact_anchor, seats)
+    def table(self, placing: Step, asked: Asked) -> FloatArray | None:
+        """Return the table of what is asked of the pair that a step places.
+
+        None where it is not the same in every state, or the step's density is no polar one.
+        """
+        words = [Words.of(self._graph, one) for one in (placing, *asked.steps)]
+        arcs = tuple([(self._relations[number], self._arcs[number]) for number in asked.numbers])
+        root = placing.relatum.root
+        if self._viewer is None and None not in words:
+            table = _shares_in_words(tuple(words), arcs, root.heading, root.deviation[2] == 0.0)
+            if table is not None:
+                return table
+        polar, state = self._polar(placing, asked), None
+        if polar is not None:
+            state = _only_state(polar, seats_read(placing, *asked.steps))
+        if polar is None or state is None:
+            return None
+        return _shares(polar[0], self._windows(polar, asked), state.tobytes(), bytes(8 * len(state) ** 2))
+
+    def _polar(self, placing: Step, asked: Asked) -> list[PolarConditional] | None:
+        """Return the densities of a step and of what is asked, for compact states; None where one is not polar."""
+        anchor = partial(compact_anchor, seats_read(placing, *asked.steps))
         said = [make_conditional(self._graph, one, anchor, self._viewer) for one in (placing, *asked.steps)]
         polar = [one for one in said if isinstance(one, PolarConditional)]
-        if len(polar) < len(said):
-            return None
-        windows = tuple(
+        return polar if len(polar) == len(said) else None
+
+    def _windows(self, polar: Sequence[PolarConditional], asked: Asked) -> tuple[Window, ...]:
+        return tuple(
             Window(seen, self._relations[number], self._arcs[number])
             for seen, number in zip(polar[1:], asked.numbers, strict=True)
         )
-        columns = np.array([column for seat in seats for column in layout.pose(seat)])
-        state = _only_state(polar, layout, columns)
-        none = np.zeros((len(columns),) * 2)
-        table = None if state is None else _shares(polar[0], windows, state.tobytes(), none.tobytes())
-        return Pair(polar[0], windows, columns, table)
+
+    def _averaged(self, pair: Pair, solved: Solved) -> FloatArray | None:
+        """Return P(atoms of a pair true or false) (2, …, 2), over a cubature of what its density reads."""
+        polar = self._polar(pair.placing, pair.asked)
+        if polar is None:
+            return None
+        seats = seats_read(pair.placing, *pair.asked.steps)
+        columns = np.array([column for seat in seats for column in solved.plan.layout.pose(seat)])
+        mean, covariance = solved.posterior.mean[columns], solved.posterior.covariance(columns)
+        windows = self._windows(polar, pair.asked)
+        return _shares(polar[0], windows, mean.tobytes(), covariance.tobytes())
 
 
 def truth_of(formula: Formula, atoms: Sequence[Atom]) -> BoolArray:
@@ -143,18 +170,34 @@ def truth_of(formula: Formula, atoms: Sequence[Atom]) -> BoolArray:
             return reduce(np.logical_or, (truth_of(part, atoms) for part in parts))
 
 
-def _only_state(polar: Sequence[PolarConditional], layout: Layout, columns: IntArray) -> FloatArray | None:
-    """Return the state (K,) that tells of all: any place, where all turn with a heading that is certain."""
-    is_free, heading = layout.free[columns], float(layout.mean[columns[2]])
-    if not is_free[2] and all(one.turns(heading, True) for one in polar):
-        return np.where(np.arange(len(columns)) == 2, heading, 0.0)
-    return None if is_free.any() else layout.mean[columns]
+def _only_state(polar: Sequence[PolarConditional], seats: Sequence[Seat]) -> FloatArray | None:
+    """Return the state (K,) that tells of all: any place, where all turn with a heading; or where nothing is open."""
+    root = seats[0].root
+    if all(one.turns(root.heading or 0.0, root.deviation[2] == 0.0) for one in polar):
+        return np.array([0.0, 0.0, root.heading or 0.0, *([0.0] * 3 * (len(seats) - 1))])
+    if any(not seat.is_landmark or any(seat.root.deviation) for seat in seats):
+        return None
+    return np.array(
+        [value for seat in seats for value in (seat.root.x, seat.root.y, seat.root.heading or 0.0)]
+    )
 
 
-def _averaged(pair: Pair, solved: Solved) -> FloatArray:
-    """Return P(atoms of a pair true or false) (2, …, 2), over a cubature of what its density reads."""
-    mean, covariance = solved.posterior.mean[pair.columns], solved.posterior.covariance(pair.columns)
-    return _shares(pair.density, pair.windows, mean.tobytes(), covariance.tobytes())
+@lru_cache(maxsize=8192)
+def _shares_in_words(
+    words: tuple[Words, ...],
+    windows: tuple[tuple[Relation, Arcs], ...],
+    heading: float | None,
+    is_certain: bool,
+) -> FloatArray | None:
+    """Return the shares of a density in windows, as `_shares` does, by words; None where they depend on more."""
+    polar = [one.conditional(heading is not None) for one in words]
+    if not all(one.turns(heading or 0.0, is_certain) for one in polar):
+        return None
+    seen = tuple(Window(one, *window) for one, window in zip(polar[1:], windows, strict=True))
+    try:
+        return _shares(polar[0], seen, np.array([0.0, 0.0, heading or 0.0]).tobytes(), bytes(72))
+    except NoRoomError:
+        return None
 
 
 @lru_cache(maxsize=8192)
@@ -176,6 +219,14 @@ def _shares(
         whole, part = np.split(table, 2, axis=axis)
         table = np.concatenate([whole - part, part], axis=axis)
     table.setflags(write=False)
+    return table
+
+
+def nothing_holds(numbers: Iterable[int], count: int) -> FloatArray:
+    """Return the table over all atoms in which some of them are false."""
+    table = np.ones((1,) * count)
+    for number in numbers:
+        table = table * along(np.array([1.0, 0.0]), (number,), count)
     return table
 
 

@@ -152,6 +152,13 @@ def _pattern(graph: RelationGraph, world: World, targets: tuple[str, ...], asked
     return _Pattern(plan, order, tuple(number[id(step.constraint)] for step in steps))
 
 
+def step_of(
+    graph: RelationGraph, constraint: Constraint, seats: Mapping[str, Seat], places: bool = True
+) -> Step:
+    """Return a constraint as a step between things that have seats, none of which is said to be on or in another."""
+    return _step(graph, constraint, seats[constraint.referent], {}, seats, places)
+
+
 def seats_read(*steps: Step) -> tuple[Seat, ...]:
     """Return the things that steps depend on, relata first."""
     read = [step.relatum for step in steps]
@@ -169,7 +176,7 @@ def asked_step(graph: RelationGraph, world: World, seats: Mapping[str, Seat], at
     related = (AtomicRelation(graph.relations[atom.relation.text].terms[0][1], atom.frame),)
     second = towards[0] if towards else None
     said = Constraint(referent, relatum, related, Statement.at(atom.span), None, second)
-    return _step(graph, said, seats[referent], {}, seats, places=False)
+    return step_of(graph, said, seats, places=False)
 
 
 @dataclass(slots=True)
