@@ -76,9 +76,12 @@ def rooted(graph: RelationGraph, names: Sequence[str]) -> RelationGraph:
 
     Raises UnreachedTargetError where they hang on several, or their chains run in circles.
     """
-    starts = dict.fromkeys(start for name in names for start in chain_starts(graph, name) or (name,))
-    if any(graph.instances_of(start) for start in starts):
-        return graph
+    starts: dict[str, None] = {}
+    for name in names:
+        own = chain_starts(graph, name) or (name,)
+        if any(graph.instances_of(start) for start in own):
+            return graph
+        starts.update(dict.fromkeys(own))
     if len(starts) != 1:
         raise UnreachedTargetError(" and ".join(names), _endings(graph, starts))
     return alone_with(graph, *starts)

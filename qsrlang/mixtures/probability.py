@@ -171,9 +171,10 @@ class _Telling:
         """Return what is to be told of a formula under conditions, all of whose `atoms` are given."""
         if len(atoms) > MAX_ATOMS:
             return cls(graph, TruthTables(graph, atoms, viewer), atoms, np.zeros(0), None, viewer)
-        factors = [one.factor(truth_of(one.formula, atoms)) for one in conditions]
-        assumed = np.prod(np.broadcast_arrays(*factors), axis=0) if factors else None
-        held = truth_of(formula, atoms) * (1.0 if assumed is None else assumed)
+        held, assumed = truth_of(formula, atoms).astype(float), None
+        for one in conditions:
+            factor = one.factor(truth_of(one.formula, atoms))
+            held, assumed = held * factor, factor if assumed is None else assumed * factor
         return cls(graph, TruthTables(graph, atoms, viewer), atoms, held, assumed, viewer)
 
     def weighed(self, table: FloatArray) -> tuple[float, float]:

@@ -173,6 +173,7 @@ class RelationGraph:
     _instances_of: Mapping[str, tuple[Landmark, ...]] = field(init=False, repr=False, compare=False)
     _kinds: Mapping[str, str] = field(init=False, repr=False, compare=False)
     _nodes: Mapping[str, str] = field(init=False, repr=False, compare=False)
+    _roles_of: Mapping[str, tuple[str, ...]] = field(init=False, repr=False, compare=False)
     evidence: tuple[str, ...] = field(init=False, repr=False, compare=False)
     _derived: dict[object, object] = field(default_factory=dict, init=False, repr=False, compare=False)
 
@@ -188,6 +189,10 @@ class RelationGraph:
         kinds = {**self.roles, **{landmark.name: landmark.kind for landmark in reversed(self.landmarks)}}
         object.__setattr__(self, "_kinds", kinds)
         object.__setattr__(self, "_nodes", {**kinds, **{role: role for role in self.roles}})
+        roles: dict[str, list[str]] = defaultdict(list)
+        for role, kind in self.roles.items():
+            roles[kind].append(role)
+        object.__setattr__(self, "_roles_of", {kind: tuple(found) for kind, found in roles.items()})
         object.__setattr__(self, "evidence", tuple(sorted(self._referents() & instances.keys())))
         object.__setattr__(self, "_choices_of", {name: tuple(found) for name, found in choices.items()})
         object.__setattr__(self, "_instances_of", {name: tuple(found) for name, found in instances.items()})
@@ -232,7 +237,7 @@ class RelationGraph:
 
     def roles_of(self, kind: str) -> tuple[str, ...]:
         """Return the objects that scenes tell apart by a role among the instances of a class."""
-        return tuple(role for role, of in self.roles.items() if of == kind)
+        return self._roles_of.get(kind, ())
 
     def instances_of(self, name: str) -> tuple[Landmark, ...]:
         """Return the landmarks that a class or landmark name stands for."""

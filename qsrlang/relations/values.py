@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 from qsrlang.language import statements as st
 from qsrlang.relations.calculus import Relation
 from qsrlang.relations.graph import Landmark, ObjectClass
@@ -29,14 +31,22 @@ def relation_value(node: st.Relation) -> Relation:
     converse = node.converse.text if node.converse else None
     disjoint = tuple(name.text for name in node.disjoint)
     arity = len(node.parameters)
-    return Relation(
-        node.name.text,
-        node.angle,
-        node.distance,
-        converse,
-        disjoint,
-        node.symmetric,
-        node.region,
-        arity,
-        node.components,
+    return _only_one(
+        Relation(
+            node.name.text,
+            node.angle,
+            node.distance,
+            converse,
+            disjoint,
+            node.symmetric,
+            node.region,
+            arity,
+            node.components,
+        )
     )
+
+
+@lru_cache(maxsize=4096)
+def _only_one(relation: Relation) -> Relation:
+    """Return the first relation that is equal to one, so that they are told to be equal at a glance."""
+    return relation

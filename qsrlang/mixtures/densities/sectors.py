@@ -58,12 +58,16 @@ def _part(off: FloatArray, half: FloatArray, reach: float) -> Part:
 
 def arcs_of(relation: Relation, relations: Mapping[str, Relation]) -> Arcs:
     """Return where a relation holds by its angle: one arc or several, all of the circle where it has none."""
+    return _arcs_among(relation, tuple([relations[name] for name in relation.disjoint]))
+
+
+@lru_cache(maxsize=1024)
+def _arcs_among(relation: Relation, rivals: tuple[Relation, ...]) -> Arcs:
     own = tuple(term.angle for _, term in relation.terms)
-    excluded = [term.angle for name in relation.disjoint for _, term in relations[name].terms]
+    excluded = [term.angle for rival in rivals for _, term in rival.terms]
     return _arcs(own, tuple(angle for angle in excluded if angle is not None))
 
 
-@lru_cache(maxsize=256)
 def _arcs(own: tuple[Density | None, ...], rivals: tuple[Density, ...]) -> Arcs:
     if None in own:
         return Arcs(((0.0, TURN),))

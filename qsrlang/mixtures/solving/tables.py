@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache, partial, reduce
 from itertools import product
@@ -32,19 +32,50 @@ MAX_ATOMS = 10
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Asked:
-    """The atoms, by their numbers, that are asked of one pair, each as a step."""
+    """The atoms, by their numbers, that are asked of one pair, each as a step, and in words if those tell all of it."""
 
     numbers: tuple[int, ...]
     steps: tuple[Step, ...]
+    words: tuple[Words, ...] | None
+
+    @classmethod
+    def of(cls, graph: RelationGraph, atoms: Iterable[tuple[int, Step]]) -> Asked:
+        """Return what numbered atoms ask of one pair."""
+        numbers, steps = zip(*atoms, strict=True)
+        words = [Words.of(graph, step) for step in steps]
+        known = tuple([one for one in words if one is not None])
+        return cls(numbers, steps, known if len(known) == len(words) else None)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Seen:
+    """The density that a step states of a pair, and the windows of atoms on it, for states of the `seats` they read."""
+
+    density: PolarConditional
+    windows: tuple[Window, ...]
+    seats: tuple[Seat, ...]
+
+    def table(self) -> FloatArray | None:
+        """Return the table (2, …, 2) of the atoms, where it is the same in every state."""
+        polar = (self.density, *(window.polar for window in self.windows))
+        state = _only_state(polar, self.seats)
+        if state is None:
+            return None
+        return _shares(self.density, self.windows, state.tobytes(), bytes(8 * len(state) ** 2))
+
+    def averaged(self, solved: Solved) -> FloatArray:
+        """Return the table of the atoms in a world, over a cubature of what is read."""
+        columns = np.array([column for seat in self.seats for column in solved.plan.layout.pose(seat)])
+        mean, covariance = solved.posterior.mean[columns], solved.posterior.covariance(columns)
+        return _shares(self.density, self.windows, mean.tobytes(), covariance.tobytes())
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Pair:
-    """What is asked of a pair that a step places, and the `table` (2, …, 2) of it, where that is always the same."""
+    """The table of what is asked of a pair, where that is the same in every state, else what tells of it in each."""
 
-    placing: Step
-    asked: Asked
     table: FloatArray | None
+    seen: Seen | None
 
 
 class TruthTables:
@@ -58,7 +89,7 @@ class TruthTables:
         self._relations = [graph.relations[atom.relation.text] for atom in atoms]
         self._arcs = [arcs_of(one, graph.relations) for one in self._relations]
         self._asked: dict[int, tuple[Layout, tuple[Asked, ...]]] = {}
-        self._pairs: dict[tuple[int, int, int], Pair | None] = {}
+        self._pairs: dict[tuple[int, int, int], Pair] = {}
 
     def of(self, solved: Solved) -> tuple[FloatArray, bool] | None:
         """Return the table of a world and whether it is exact; None where only draws tell.
@@ -74,9 +105,9 @@ class TruthTables:
         table, exact = np.ones((1,) * len(self._atoms)), True
         for one in asked:
             pair = self._pair(solved, one, placing)
-            shares = None if pair is None else pair.table
-            if pair is not None and shares is None and len(asked) == 1:
-                shares, exact = self._averaged(pair, solved), False
+            shares = pair.table
+            if shares is None and pair.seen is not None and len(asked) == 1:
+                shares, exact = pair.seen.averaged(solved), False
             if shares is None:
                 return None
             table = table * along(shares, one.numbers, len(self._atoms))
@@ -98,61 +129,45 @@ class TruthTables:
             step = asked_step(self._graph, world, seats, atom)
             if step is not None:
                 groups[step.referent, step.relatum].append((number, step))
-        return tuple([Asked(*zip(*group, strict=True)) for group in groups.values()])
+        return tuple([Asked.of(self._graph, group) for group in groups.values()])
 
-    def _pair(self, solved: Solved, asked: Asked, placing: Mapping[Seat, Step]) -> Pair | None:
-        """Return what is asked of a pair; None where more than one polar density tells of it."""
+    def _pair(self, solved: Solved, asked: Asked, placing: Mapping[Seat, Step]) -> Pair:
+        """Return what is asked of a pair, if one polar density alone tells of it."""
         step = placing.get(asked.steps[0].referent)
         if step is None or step.relatum != asked.steps[0].relatum or step.second or asked.steps[0].second:
-            return None
+            return Pair(None, None)
         key = (id(solved.plan.layout), id(step.constraint), asked.numbers[0])
         if key not in self._pairs:
-            is_polar = self._polar(step, asked) is not None
-            self._pairs[key] = Pair(step, asked, self.table(step, asked)) if is_polar else None
+            self._pairs[key] = self.of_pair(step, asked)
         return self._pairs[key]
 
-    def table(self, placing: Step, asked: Asked) -> FloatArray | None:
-        """Return the table of what is asked of the pair that a step places.
+    def of_pair(self, placing: Step, asked: Asked) -> Pair:
+        """Return what is asked of the pair that a step places."""
+        table = self._in_words(placing, asked)
+        seen = self._seen(placing, asked) if table is None else None
+        return Pair(table if seen is None else seen.table(), seen)
 
-        None where it is not the same in every state, or the step's density is no polar one.
-        """
-        words = [Words.of(self._graph, one) for one in (placing, *asked.steps)]
-        arcs = tuple([(self._relations[number], self._arcs[number]) for number in asked.numbers])
-        root = placing.relatum.root
-        if self._viewer is None and None not in words:
-            table = _shares_in_words(tuple(words), arcs, root.heading, root.deviation[2] == 0.0)
-            if table is not None:
-                return table
-        polar, state = self._polar(placing, asked), None
-        if polar is not None:
-            state = _only_state(polar, seats_read(placing, *asked.steps))
-        if polar is None or state is None:
+    def _in_words(self, placing: Step, asked: Asked) -> FloatArray | None:
+        said = None if self._viewer is not None or asked.words is None else Words.of(self._graph, placing)
+        if said is None or asked.words is None:
             return None
-        return _shares(polar[0], self._windows(polar, asked), state.tobytes(), bytes(8 * len(state) ** 2))
+        windows = tuple([(self._relations[number], self._arcs[number]) for number in asked.numbers])
+        root = placing.relatum.root
+        return _shares_in_words(said, asked.words, windows, root.heading, root.deviation[2] == 0.0)
 
-    def _polar(self, placing: Step, asked: Asked) -> list[PolarConditional] | None:
-        """Return the densities of a step and of what is asked, for compact states; None where one is not polar."""
-        anchor = partial(compact_anchor, seats_read(placing, *asked.steps))
+    def _seen(self, placing: Step, asked: Asked) -> Seen | None:
+        """Return the density of a step and the windows that are asked about; None where one is not polar."""
+        seats = seats_read(placing, *asked.steps)
+        anchor = partial(compact_anchor, seats)
         said = [make_conditional(self._graph, one, anchor, self._viewer) for one in (placing, *asked.steps)]
         polar = [one for one in said if isinstance(one, PolarConditional)]
-        return polar if len(polar) == len(said) else None
-
-    def _windows(self, polar: Sequence[PolarConditional], asked: Asked) -> tuple[Window, ...]:
-        return tuple(
+        if len(polar) < len(said):
+            return None
+        windows = tuple(
             Window(seen, self._relations[number], self._arcs[number])
             for seen, number in zip(polar[1:], asked.numbers, strict=True)
         )
-
-    def _averaged(self, pair: Pair, solved: Solved) -> FloatArray | None:
-        """Return P(atoms of a pair true or false) (2, …, 2), over a cubature of what its density reads."""
-        polar = self._polar(pair.placing, pair.asked)
-        if polar is None:
-            return None
-        seats = seats_read(pair.placing, *pair.asked.steps)
-        columns = np.array([column for seat in seats for column in solved.plan.layout.pose(seat)])
-        mean, covariance = solved.posterior.mean[columns], solved.posterior.covariance(columns)
-        windows = self._windows(polar, pair.asked)
-        return _shares(polar[0], windows, mean.tobytes(), covariance.tobytes())
+        return Seen(polar[0], windows, seats)
 
 
 def truth_of(formula: Formula, atoms: Sequence[Atom]) -> BoolArray:
@@ -184,13 +199,14 @@ def _only_state(polar: Sequence[PolarConditional], seats: Sequence[Seat]) -> Flo
 
 @lru_cache(maxsize=8192)
 def _shares_in_words(
-    words: tuple[Words, ...],
+    said: Words,
+    asked: tuple[Words, ...],
     windows: tuple[tuple[Relation, Arcs], ...],
     heading: float | None,
     is_certain: bool,
 ) -> FloatArray | None:
     """Return the shares of a density in windows, as `_shares` does, by words; None where they depend on more."""
-    polar = [one.conditional(heading is not None) for one in words]
+    polar = [one.conditional(heading is not None) for one in (said, *asked)]
     if not all(one.turns(heading or 0.0, is_certain) for one in polar):
         return None
     seen = tuple(Window(one, *window) for one, window in zip(polar[1:], windows, strict=True))
@@ -222,11 +238,10 @@ def _shares(
     return table
 
 
-def nothing_holds(numbers: Iterable[int], count: int) -> FloatArray:
+def nothing_holds(numbers: Collection[int], count: int) -> FloatArray:
     """Return the table over all atoms in which some of them are false."""
-    table = np.ones((1,) * count)
-    for number in numbers:
-        table = table * along(np.array([1.0, 0.0]), (number,), count)
+    table = np.zeros([2 if number in numbers else 1 for number in range(count)])
+    table[(0,) * count] = 1.0
     return table
 
 

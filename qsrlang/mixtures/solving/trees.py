@@ -66,7 +66,7 @@ def _mixed(twig: Twig, asked: Asked | None, tables: TruthTables, count: int) -> 
         return np.full((1,) * count, sum([one.share for one in twig.alternatives]))
     mixed: float | FloatArray = 0.0
     for one in twig.alternatives:
-        table = tables.table(twig.step.saying(one.constraints[0]), asked)
+        table = tables.of_pair(twig.step.saying(one.constraints[0]), asked).table
         if table is None:
             return None
         mixed = mixed + one.share * table

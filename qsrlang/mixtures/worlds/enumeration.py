@@ -37,7 +37,7 @@ class World:
 
     def named(self, name: str) -> str:
         """Return what a name stands for: for a class perhaps one of its roles."""
-        return next((role for kind, role in self.aliases if kind == name), name)
+        return name if not self.aliases else next((role for kind, role in self.aliases if kind == name), name)
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,9 +17,7 @@ def instances_in_roles(graph: RelationGraph, kind: str) -> tuple[str, ...]:
 
     Empty where no role is placed.
     """
-    if not graph.roles:
-        return ()
-    roles = tuple(role for role in graph.roles_of(kind) if graph.choices_for(role))
+    roles = tuple([role for role in graph.roles_of(kind) if graph.choices_for(role)])
     return (*roles, kind) if roles and graph.choices_for(kind) else roles
 
 

@@ -34,6 +34,12 @@ def tree_of(graph: RelationGraph, names: Iterable[str]) -> Tree | None:
     There what is open about one pair does not depend on what is about another, but for whether things are placed.
     """
     names = tuple(names)
+    return graph.derived(
+        ("tree", names), lambda: _tree(graph, names), lambda tree: len(tree.twigs) if tree else 0
+    )
+
+
+def _tree(graph: RelationGraph, names: tuple[str, ...]) -> Tree | None:
     if graph.evidence and telling(graph, names):
         return None
     seats: dict[str, Seat] = {}

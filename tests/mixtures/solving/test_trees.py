@@ -85,6 +85,23 @@ def test_what_is_no_tree_is_left_to_the_sum_over_worlds(more, formula, is_tree):
     )
 
 
+@pytest.mark.parametrize(("frame", "is_same"), [("", True), (" wrt absolute", False)])
+def test_what_turns_with_a_heading_is_told_exactly_though_that_is_not_certain(frame, is_same):
+    shaky = qsr.parse_knowledge(TREE.replace("facing -90 deg", "facing -90 deg ± (1 cm, 1 cm, 20 deg)"))
+    formula = f"left-of(C, A){frame} ∧ behind-of(B, A)"
+    assert (table_of(shaky, formula) is not None) == is_same
+    if is_same:
+        firm = qsr.parse_knowledge(TREE)
+        assert shaky.prob(formula) == firm.prob(formula)
+
+
+def test_what_is_elsewhere_in_the_likeliest_world_is_told_without_worlds():
+    known = qsr.parse_knowledge(TREE.replace("0.9 :: right-of(C, A)", "0.1 :: right-of(C, A)"))
+    assert table_of(known, "right-of(C, A)") is not None
+    summed = known.explain(parse_formula("right-of(C, A)")).answer
+    assert known.prob("right-of(C, A)").value == pytest.approx(summed.value, abs=1e-12)
+
+
 def test_a_thousand_choices_are_no_work():
     before = ["M", *(f"X{n}" for n in range(40))]
     links = "".join(
