@@ -3,8 +3,8 @@
 python benchmarks/bench_inference.py [--peers PYTHON] [--figure PATH]
 
 PYTHON is an interpreter that has problog and scenic (`pip install problog scenic` in an environment of its own).
-The peers' programs are in benchmarks/peers/, each beside ours, and the two sides work in turn. Medians are given, with
-the least and the greatest.
+The peers' programs are in benchmarks/peers/, each beside ours, and the two sides work in turn, several rounds each.
+Medians are given, with the least and the greatest.
 """
 
 from __future__ import annotations
@@ -26,6 +26,7 @@ PEERS = Path(__file__).parent / "peers"
 MONITOR = "monitor-1 : Monitor at (0 m, 0 m) facing -90 deg ± (2 cm, 2 cm, 3 deg)"
 DESK = "desk-1 : Desk at (0 m, -0.2 m) facing -90 deg"
 LEAST_SECONDS, SLOW_SECONDS = 0.2, 3.0
+TURNS, ROUNDS = 3, 15
 DIRECTIONS = ("right-of", "behind-of", "left-of", "in-front-of")
 HEAD = """
 static M { front: yes }.
@@ -145,15 +146,16 @@ def rooms(python: str | None) -> None:
     rounds = []
     answers(qsr.parse_knowledge(text))
     peer = Peer(python, "rounds_problog.py", "two_rooms.pl") if python else None
-    for number in range(1, 16):
-        moved = text.replace("m1 : Monitor at (0 m", f"m1 : Monitor at ({number} mm")
-        start = time.perf_counter()
-        known = qsr.parse_knowledge(moved)
-        read = time.perf_counter()
-        found = answers(known)
-        ours.append(time.perf_counter() - read)
-        whole.append(time.perf_counter() - start)
-        rounds += [peer.round("go")] if peer else []
+    for turn in range(TURNS):
+        for number in range(ROUNDS):
+            moved = text.replace("m1 : Monitor at (0 m", f"m1 : Monitor at ({ROUNDS * turn + number + 1} mm")
+            start = time.perf_counter()
+            known = qsr.parse_knowledge(moved)
+            read = time.perf_counter()
+            found = answers(known)
+            ours.append(time.perf_counter() - read)
+            whole.append(time.perf_counter() - start)
+        rounds += [peer.round("go") for _ in range(ROUNDS)] if peer else []
     show("  qsrlang, relation graph to answers", Spread.of(ours).text(1e3, "ms"))
     show("  qsrlang, text to answers", Spread.of(whole).text(1e3, "ms"))
     if peer is None:

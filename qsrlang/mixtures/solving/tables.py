@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache, partial, reduce
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 
@@ -30,21 +31,21 @@ from qsrlang.relations.graph import RelationGraph
 MAX_ATOMS = 10
 
 
+class Holding(NamedTuple):
+    """An atom in words, and where its relation holds."""
+
+    words: Words
+    relation: Relation
+    arcs: Arcs
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Asked:
-    """The atoms, by their numbers, that are asked of one pair, each as a step, and in words if those tell all of it."""
+    """The atoms, by their numbers, that are asked of one pair, each as a step; `said` where words tell all of them."""
 
     numbers: tuple[int, ...]
     steps: tuple[Step, ...]
-    words: tuple[Words, ...] | None
-
-    @classmethod
-    def of(cls, graph: RelationGraph, atoms: Iterable[tuple[int, Step]]) -> Asked:
-        """Return what numbered atoms ask of one pair."""
-        numbers, steps = zip(*atoms, strict=True)
-        words = [Words.of(graph, step) for step in steps]
-        known = tuple([one for one in words if one is not None])
-        return cls(numbers, steps, known if len(known) == len(words) else None)
+    said: tuple[Holding, ...] | None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -129,7 +130,17 @@ class TruthTables:
             step = asked_step(self._graph, world, seats, atom)
             if step is not None:
                 groups[step.referent, step.relatum].append((number, step))
-        return tuple([Asked.of(self._graph, group) for group in groups.values()])
+        return tuple([self._asked_together(group) for group in groups.values()])
+
+    def _asked_together(self, group: Iterable[tuple[int, Step]]) -> Asked:
+        numbers, steps = zip(*group, strict=True)
+        holding = []
+        for number, step in zip(numbers, steps, strict=True):
+            words = None if self._viewer is not None else Words.of(self._graph, step)
+            if words is None:
+                return Asked(numbers, steps, None)
+            holding.append(Holding(words, self._relations[number], self._arcs[number]))
+        return Asked(numbers, steps, tuple(holding))
 
     def _pair(self, solved: Solved, asked: Asked, placing: Mapping[Seat, Step]) -> Pair:
         """Return what is asked of a pair, if one polar density alone tells of it."""
@@ -148,12 +159,11 @@ class TruthTables:
         return Pair(table if seen is None else seen.table(), seen)
 
     def _in_words(self, placing: Step, asked: Asked) -> FloatArray | None:
-        said = None if self._viewer is not None or asked.words is None else Words.of(self._graph, placing)
-        if said is None or asked.words is None:
+        said = None if asked.said is None else Words.of(self._graph, placing)
+        if said is None or asked.said is None:
             return None
-        windows = tuple([(self._relations[number], self._arcs[number]) for number in asked.numbers])
         root = placing.relatum.root
-        return _shares_in_words(said, asked.words, windows, root.heading, root.deviation[2] == 0.0)
+        return _shares_in_words(said, asked.said, root.heading, root.deviation[2] == 0.0)
 
     def _seen(self, placing: Step, asked: Asked) -> Seen | None:
         """Return the density of a step and the windows that are asked about; None where one is not polar."""
@@ -199,17 +209,13 @@ def _only_state(polar: Sequence[PolarConditional], seats: Sequence[Seat]) -> Flo
 
 @lru_cache(maxsize=8192)
 def _shares_in_words(
-    said: Words,
-    asked: tuple[Words, ...],
-    windows: tuple[tuple[Relation, Arcs], ...],
-    heading: float | None,
-    is_certain: bool,
+    said: Words, asked: tuple[Holding, ...], heading: float | None, is_certain: bool
 ) -> FloatArray | None:
     """Return the shares of a density in windows, as `_shares` does, by words; None where they depend on more."""
-    polar = [one.conditional(heading is not None) for one in (said, *asked)]
+    polar = [one.conditional(heading is not None) for one in (said, *(each.words for each in asked))]
     if not all(one.turns(heading or 0.0, is_certain) for one in polar):
         return None
-    seen = tuple(Window(one, *window) for one, window in zip(polar[1:], windows, strict=True))
+    seen = tuple(Window(one, each.relation, each.arcs) for one, each in zip(polar[1:], asked, strict=True))
     try:
         return _shares(polar[0], seen, np.array([0.0, 0.0, heading or 0.0]).tobytes(), bytes(72))
     except NoRoomError:
