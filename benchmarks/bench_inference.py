@@ -136,7 +136,8 @@ SEEN = "in-front-of(first: Keyboard, m1)"
 
 def answers(known: qsr.KnowledgeBase) -> dict[str, float]:
     """Answer the five queries of two_rooms.pl, given that the first keyboard is in front of its monitor."""
-    return {theirs: known.prob(ours, SEEN if "first" in ours else None).value for theirs, ours in QUERIES}
+    found = known.prob_each([ours for _, ours in QUERIES], SEEN)
+    return {theirs: one.value for (theirs, _), one in zip(QUERIES, found, strict=True)}
 
 
 def rooms(python: str | None) -> None:

@@ -57,8 +57,9 @@ from .mixtures.answers import Component, Where
 from .mixtures.explanation import Explanation, Proof, Reason, Spot
 from .mixtures.gaussian import GaussianMixture
 from .mixtures.information import LandmarkRanking, LandmarkValue
+from .mixtures.loading import load, parse_knowledge
 from .mixtures.probability import Probability
-from .mixtures.queries import Answer, KnowledgeBase, load, parse_knowledge
+from .mixtures.queries import Answer, KnowledgeBase
 from .mixtures.scenes import SceneSamples
 from .planning.atlas import Atlas, Lattice
 from .planning.belief import Belief, voxel_weights

@@ -12,7 +12,7 @@ from rich.table import Table
 
 from qsrlang.cli.options import Format, OutputFormat
 from qsrlang.learning.differences import Change, differences
-from qsrlang.mixtures.queries import load
+from qsrlang.mixtures.loading import load
 
 MIN_WIDTH = 100
 

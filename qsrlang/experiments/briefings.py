@@ -17,7 +17,8 @@ from qsrlang.experiments.scenarios import Arm, Scenario
 from qsrlang.geometry.viewcone import ViewCone
 from qsrlang.maps.supports import Supports, find_supports
 from qsrlang.mixtures.answers import Where
-from qsrlang.mixtures.queries import KnowledgeBase, load
+from qsrlang.mixtures.loading import load
+from qsrlang.mixtures.queries import KnowledgeBase
 from qsrlang.planning.outcome import Limits
 from qsrlang.planning.planners.believing import BeliefPlanner
 from qsrlang.planning.planners.paper import QSRPlanner, RandomPlanner

@@ -29,7 +29,8 @@ from qsrlang.learning.merging import learn_anew, learned_before
 from qsrlang.learning.observations import NUMBERS, Observations, Row
 from qsrlang.learning.searches import sightings_of
 from qsrlang.learning.store import ObservationStore
-from qsrlang.mixtures.queries import KnowledgeBase, load
+from qsrlang.mixtures.loading import load
+from qsrlang.mixtures.queries import KnowledgeBase
 from qsrlang.planning.outcome import SearchResult
 from qsrlang.planning.seeding import TrialSeeds
 from qsrlang.relations.imports import find_knowledge, read_library, read_source

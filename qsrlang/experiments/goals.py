@@ -14,7 +14,8 @@ from qsrlang.experiments.presets import PlannerEntry
 from qsrlang.experiments.scenarios import Arm, Scenario
 from qsrlang.maps.supports import Supports
 from qsrlang.mixtures.answers import Where
-from qsrlang.mixtures.queries import KnowledgeBase, load
+from qsrlang.mixtures.loading import load
+from qsrlang.mixtures.queries import KnowledgeBase
 from qsrlang.planning.atlas import Atlas
 from qsrlang.planning.belief import Belief, prior_of, voxel_weights
 from qsrlang.planning.frusta import POINT, Extent

@@ -76,6 +76,8 @@ def rooted(graph: RelationGraph, names: Sequence[str]) -> RelationGraph:
 
     Raises UnreachedTargetError where they hang on several, or their chains run in circles.
     """
+    if any(graph.instances_of(name) for name in names):
+        return graph
     starts: dict[str, None] = {}
     for name in names:
         own = chain_starts(graph, name) or (name,)

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from qsrlang.arrays import FloatArray
 from qsrlang.errors import ImpossibleConditionError
 from qsrlang.geometry.pose import Pose2
@@ -77,26 +75,65 @@ def probability(
     limit: int = MAX_WORLDS,
 ) -> Probability:
     """Return P(formula | given, requirements), as `prove` does; of trees without telling worlds apart."""
-    found = _of_tree(graph, formula, conditions_on(graph, objects_of(formula), given), viewer)
-    return found or prove(graph, formula, given, viewer, drawing, limit).answer
+    found = _of_tree(graph, (_Question.of(graph, formula, given),), viewer)
+    return found[0] if found else prove(graph, formula, given, viewer, drawing, limit).answer
+
+
+def probabilities(
+    graph: RelationGraph,
+    formulas: Sequence[Formula],
+    given: Formula | None,
+    viewer: Pose2 | None,
+    drawing: Callable[[], Drawing],
+    limit: int = MAX_WORLDS,
+) -> tuple[Probability, ...]:
+    """Return P(formula | given, requirements) of several formulas; of trees all from one table."""
+    found = _of_tree(graph, [_Question.of(graph, one, given) for one in formulas], viewer)
+    return found or tuple(probability(graph, one, given, viewer, drawing, limit) for one in formulas)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Question:
+    """A formula, the conditions on what it depends on, and the different atoms of all of them."""
+
+    formula: Formula
+    conditions: tuple[Condition, ...]
+    atoms: tuple[Atom, ...]
+
+    @classmethod
+    def of(cls, graph: RelationGraph, formula: Formula, given: Formula | None) -> _Question:
+        conditions = conditions_on(graph, objects_of(formula), given)
+        atoms = (*atoms_of(formula), *assumed_atoms(conditions))
+        return cls(formula, conditions, tuple(dict.fromkeys(atoms)))
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The things that it speaks of."""
+        return objects_of(*self.atoms)
+
+    @property
+    def texts(self) -> tuple[str, ...]:
+        """What is assumed, as it was written."""
+        return tuple([one.text for one in self.conditions])
 
 
 def _of_tree(
-    graph: RelationGraph, formula: Formula, conditions: tuple[Condition, ...], viewer: Pose2 | None
-) -> Probability | None:
-    atoms = (*atoms_of(formula), *assumed_atoms(conditions))
+    graph: RelationGraph, questions: Sequence[_Question], viewer: Pose2 | None
+) -> tuple[Probability, ...] | None:
+    atoms = tuple(dict.fromkeys([atom for one in questions for atom in one.atoms]))
     if len(atoms) > MAX_ATOMS:
         return None
-    telling = _Telling.of(graph, formula, conditions, atoms, viewer)
-    names = objects_of(formula, *(one.formula for one in conditions))
-    table = tree_table(graph, names, atoms, telling.tables)
+    table = tree_table(graph, objects_of(*atoms), TruthTables(graph, atoms, viewer))
     if table is None:
         return None
+    return tuple([_read_off(table, _Telling.of(one, atoms), one) for one in questions])
+
+
+def _read_off(table: FloatArray, telling: _Telling, question: _Question) -> Probability:
     true, whole = telling.weighed(table)
-    texts = tuple(one.text for one in conditions)
     if not whole > 0.0:
-        raise ImpossibleConditionError(texts, 0)
-    return Probability(text_of(formula), min(true / whole, 1.0), EXACT, assumed=texts)
+        raise ImpossibleConditionError(question.texts, 0)
+    return Probability(text_of(question.formula), min(true / whole, 1.0), EXACT, assumed=question.texts)
 
 
 def prove(
@@ -113,100 +150,86 @@ def prove(
     of each world; else by weighted draws of the true densities. What no world places holds in no relation. Raises
     ImpossibleConditionError, NoRoomError, MissingFacingError.
     """
-    conditions = conditions_on(graph, objects_of(formula), given)
-    found = _without_draws(graph, formula, conditions, viewer, limit)
-    return found or _by_draws(graph, formula, conditions, drawing())
+    question = _Question.of(graph, formula, given)
+    found = _without_draws(graph, question, viewer, limit)
+    return found or _by_draws(graph, question, drawing())
 
 
 def _without_draws(
-    graph: RelationGraph,
-    formula: Formula,
-    conditions: tuple[Condition, ...],
-    viewer: Pose2 | None,
-    limit: int,
+    graph: RelationGraph, question: _Question, viewer: Pose2 | None, limit: int
 ) -> Proved | None:
-    atoms = (*atoms_of(formula), *assumed_atoms(conditions))
-    names = objects_of(formula, *(one.formula for one in conditions))
-    solution = solve_worlds(graph, names, viewer, limit, atoms, is_needed=False)
-    telling = _Telling.of(graph, formula, conditions, atoms, viewer)
+    if len(question.atoms) > MAX_ATOMS:
+        return None
+    solution = solve_worlds(graph, question.names, viewer, limit, question.atoms, is_needed=False)
+    tables, telling = TruthTables(graph, question.atoms, viewer), _Telling.of(question, question.atoms)
     told = []
     for one in solution.worlds:
-        found = telling.masses(one)
+        found = telling.masses(tables.of(one)) or _by_cone(graph, question, telling, one, viewer)
         if found is None:
             return None
         told.append(found)
     masses = [one.weight * whole for one, (_, whole, _) in zip(solution.worlds, told, strict=True)]
     total = sum(masses)
     if not total > 0.0:
-        raise ImpossibleConditionError([one.text for one in conditions], 0)
+        raise ImpossibleConditionError(question.texts, 0)
     worlds = [Assumed(one, mass / total) for one, mass in zip(solution.worlds, masses, strict=True)]
     shares = [true / whole if whole > 0.0 else 0.0 for true, whole, _ in told]
     value = sum(one.weight * share for one, share in zip(worlds, shares, strict=True))
     method = EXACT if all(exact for *_, exact in told) else GAUSSIAN
-    texts = tuple(one.text for one in conditions)
-    answer = Probability(text_of(formula), min(value, 1.0), method, assumed=texts, dropped=solution.dropped)
+    text = text_of(question.formula)
+    answer = Probability(text, min(value, 1.0), method, assumed=question.texts, dropped=solution.dropped)
     return Proved(answer, worlds, shares)
+
+
+def _by_cone(
+    graph: RelationGraph, question: _Question, telling: _Telling, solved: Solved, viewer: Pose2 | None
+) -> tuple[float, float, bool] | None:
+    """Return the mass of a world in which one direction holds or not, by its Gaussian, and that of the world."""
+    if question.conditions or len(question.atoms) != 1:
+        return None
+    share = direction_probability(graph, solved, question.atoms[0], viewer)
+    return None if share is None else (float(telling.held @ [1.0 - share, share]), 1.0, False)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Telling:
-    """Where, among the combinations of atoms, a formula holds, and how conditions weigh them."""
+    """Where, among the combinations of atoms, a formula holds, and how its conditions weigh them."""
 
-    graph: RelationGraph
-    tables: TruthTables
-    atoms: Sequence[Atom]
     held: FloatArray
     assumed: FloatArray | None
-    viewer: Pose2 | None
 
     @classmethod
-    def of(
-        cls,
-        graph: RelationGraph,
-        formula: Formula,
-        conditions: tuple[Condition, ...],
-        atoms: Sequence[Atom],
-        viewer: Pose2 | None,
-    ) -> _Telling:
-        """Return what is to be told of a formula under conditions, all of whose `atoms` are given."""
-        if len(atoms) > MAX_ATOMS:
-            return cls(graph, TruthTables(graph, atoms, viewer), atoms, np.zeros(0), None, viewer)
-        held, assumed = truth_of(formula, atoms).astype(float), None
-        for one in conditions:
+    def of(cls, question: _Question, atoms: Sequence[Atom]) -> _Telling:
+        """Return what is to be told of a question, all of whose atoms are among `atoms`."""
+        held, assumed = truth_of(question.formula, atoms).astype(float), None
+        for one in question.conditions:
             factor = one.factor(truth_of(one.formula, atoms))
             held, assumed = held * factor, factor if assumed is None else assumed * factor
-        return cls(graph, TruthTables(graph, atoms, viewer), atoms, held, assumed, viewer)
+        return cls(held, assumed)
 
     def weighed(self, table: FloatArray) -> tuple[float, float]:
         """Return the mass of a table in which formula and conditions hold, and that of the conditions."""
         whole = 1.0 if self.assumed is None else float((table * self.assumed).sum())
         return float((table * self.held).sum()), whole
 
-    def masses(self, solved: Solved) -> tuple[float, float, bool] | None:
-        """Return the mass of a world in which formula and conditions hold, that of the latter, and if exact."""
-        found = self.tables.of(solved)
-        if found is not None:
-            return (*self.weighed(found[0]), found[1])
-        if self.assumed is not None or len(self.atoms) != 1:
-            return None
-        share = direction_probability(self.graph, solved, self.atoms[0], self.viewer)
-        return None if share is None else (float(self.held @ [1.0 - share, share]), 1.0, False)
+    def masses(self, found: tuple[FloatArray, bool] | None) -> tuple[float, float, bool] | None:
+        """Return the mass of a world's table in which formula and conditions hold, that of the latter, and if exact."""
+        return None if found is None else (*self.weighed(found[0]), found[1])
 
 
-def _by_draws(
-    graph: RelationGraph, formula: Formula, conditions: tuple[Condition, ...], drawing: Drawing
-) -> Proved:
+def _by_draws(graph: RelationGraph, question: _Question, drawing: Drawing) -> Proved:
+    formula, conditions = question.formula, question.conditions
     drawn, dropped = draw_scenes(graph, objects_of(formula), conditions, drawing, tuple(atoms_of(formula)))
     held = [one.outlook.holds(formula) for one in drawn]
     masses = [float(one.weights @ is_held) for one, is_held in zip(drawn, held, strict=True)]
-    value, assumed = sum(masses), tuple(one.text for one in conditions)
+    value = sum(masses)
     answer = Probability(
         text_of(formula),
         min(value, 1.0),
         DRAWS,
         ratio_error(drawn, held, value),
         effective_draws(drawn),
-        assumed,
+        question.texts,
         dropped,
     )
     weights = [one.weight for one in drawn]

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from pathlib import Path
 from typing import TypeAlias, TypeVar, overload
 
 import numpy as np
@@ -13,10 +12,9 @@ import numpy as np
 from qsrlang.errors import UnansweredQueryError, UnknownNameError, ValueRangeError
 from qsrlang.geometry.pose import Pose2
 from qsrlang.language import questions
-from qsrlang.language.diagnostics import Diagnostic, raise_errors
+from qsrlang.language.diagnostics import Diagnostic
 from qsrlang.language.nodes.questions import MAX_SCENES
 from qsrlang.language.parser import parse_formula, parse_landmark, parse_query
-from qsrlang.language.source import Source
 from qsrlang.language.syntax import Atom, Formula, atoms_of
 from qsrlang.mixtures.answers import Where
 from qsrlang.mixtures.draws.conditions import conditions_on, objects_of
@@ -26,16 +24,15 @@ from qsrlang.mixtures.information import LandmarkRanking, rank_landmarks
 from qsrlang.mixtures.manner import Manner
 from qsrlang.mixtures.names import check_atom, check_object, check_question, drawn_names
 from qsrlang.mixtures.poses import Poses, landmarks_at
-from qsrlang.mixtures.probability import Probability, probability, prove
+from qsrlang.mixtures.probability import Probability, probabilities, probability, prove
 from qsrlang.mixtures.reduction import MAX_COMPONENTS
 from qsrlang.mixtures.scenes import SceneSamples, sample_scenes
 from qsrlang.mixtures.worlds.enumeration import MAX_WORLDS
-from qsrlang.relations.build import ANYWHERE, Built, build_graph
+from qsrlang.relations.build import ANYWHERE, Built
 from qsrlang.relations.consistency.conflicts import Consistency
 from qsrlang.relations.consistency.deciding import find_conflicts
 from qsrlang.relations.contexts import Circumstances
 from qsrlang.relations.graph import Landmark, RelationGraph
-from qsrlang.relations.imports import find_knowledge, read_source
 from qsrlang.relations.values import landmark_value
 
 Answer: TypeAlias = Where | Probability | Explanation | LandmarkRanking | SceneSamples | Consistency
@@ -143,6 +140,22 @@ class KnowledgeBase:
         """
         how = Manner("exact", samples, rng, viewer, Bounds())
         return self._told(probability, self._formula(formula), given, how)
+
+    def prob_each(
+        self,
+        formulas: Iterable[str | Formula],
+        given: str | Formula | None = None,
+        *,
+        viewer: Pose2 | None = None,
+        samples: int = DEFAULT_SAMPLES,
+        rng: np.random.Generator | None = None,
+    ) -> tuple[Probability, ...]:
+        """Return how probable each of several formulas is, as `prob` does; what they share is worked out once."""
+        how = Manner("exact", samples, rng, viewer, Bounds())
+        nodes, assumed = [self._formula(one) for one in formulas], self._formula(given)
+        if all(self._rooted(one, assumed) is self.graph for one in nodes):
+            return probabilities(self.graph, nodes, assumed, viewer, how.drawing, how.bounds.worlds)
+        return tuple(self._told(probability, one, assumed, how) for one in nodes)
 
     def explain(
         self,
@@ -257,8 +270,11 @@ class KnowledgeBase:
         self, tell: Callable[..., _T], formula: Formula, given: str | Formula | None, how: Manner
     ) -> _T:
         assumed = self._formula(given)
-        graph = rooted(self.graph, objects_of(formula, *([assumed] if assumed else [])))
+        graph = self._rooted(formula, assumed)
         return tell(graph, formula, assumed, how.viewer, how.drawing, how.bounds.worlds)
+
+    def _rooted(self, formula: Formula, given: Formula | None) -> RelationGraph:
+        return rooted(self.graph, objects_of(formula, *([given] if given else [])))
 
     @overload
     def _formula(self, formula: str | Formula) -> Formula: ...
@@ -272,25 +288,6 @@ class KnowledgeBase:
         for atom in atoms_of(node):
             check_atom(atom, self.graph)
         return node
-
-
-def load(name: str | Path) -> KnowledgeBase:
-    """Load knowledge: a shipped name such as `office/desk`, or a path that ends in .qsr.
-
-    Raises FileError, and LanguageError with every error found in the text and in what it imports.
-    """
-    return _known(read_source(find_knowledge(str(name))))
-
-
-def parse_knowledge(text: str, name: str = "<text>") -> KnowledgeBase:
-    """Return the knowledge that a text states; raises LanguageError."""
-    return _known(Source(name, text))
-
-
-def _known(source: Source) -> KnowledgeBase:
-    built = build_graph(source)
-    raise_errors(built.diagnostics)
-    return KnowledgeBase(built.graph, built.diagnostics, built)
 
 
 @lru_cache(maxsize=256)

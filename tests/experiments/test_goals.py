@@ -10,7 +10,7 @@ from qsrlang.experiments.goals import Reminder, extent_of, weights_of
 from qsrlang.experiments.presets import find_preset, read_planner
 from qsrlang.experiments.scenarios import load_scenario
 from qsrlang.experiments.stories import open_search
-from qsrlang.mixtures.queries import load
+from qsrlang.mixtures.loading import load
 from qsrlang.planning.noise import Noise
 from qsrlang.planning.world import Detection
 

@@ -7,7 +7,7 @@ from qsrlang.experiments.comparing import compare
 from qsrlang.experiments.places import build_world, read_place
 from qsrlang.experiments.scenarios import load_scenario
 from qsrlang.experiments.stories import open_search
-from qsrlang.mixtures.queries import load
+from qsrlang.mixtures.loading import load
 from qsrlang.planning.sight import Sight
 from qsrlang.resources import data_root
 

@@ -86,7 +86,7 @@ class TruthTables:
     """
 
     def __init__(self, graph: RelationGraph, atoms: Sequence[Atom], viewer: Pose2 | None) -> None:
-        self._graph, self._atoms, self._viewer = graph, tuple(atoms), viewer
+        self._graph, self.atoms, self._viewer = graph, tuple(atoms), viewer
         self._relations = [graph.relations[atom.relation.text] for atom in atoms]
         self._arcs = [arcs_of(one, graph.relations) for one in self._relations]
         self._asked: dict[int, tuple[Layout, tuple[Asked, ...]]] = {}
@@ -99,11 +99,11 @@ class TruthTables:
         those are certain, different pairs are independent. Of one pair, what its density reads may be open, and a
         Gaussian. Atoms on what is not placed are false.
         """
-        if solved.plan.fused or len(self._atoms) > MAX_ATOMS:
+        if solved.plan.fused or len(self.atoms) > MAX_ATOMS:
             return None
         asked = self.asked(solved.world, solved.plan)
         placing = {step.referent: step for step in solved.plan.steps if step.places}
-        table, exact = np.ones((1,) * len(self._atoms)), True
+        table, exact = np.ones((1,) * len(self.atoms)), True
         for one in asked:
             pair = self._pair(solved, one, placing)
             shares = pair.table
@@ -111,10 +111,10 @@ class TruthTables:
                 shares, exact = pair.seen.averaged(solved), False
             if shares is None:
                 return None
-            table = table * along(shares, one.numbers, len(self._atoms))
+            table = table * along(shares, one.numbers, len(self.atoms))
         placed = {number for one in asked for number in one.numbers}
-        unplaced = set(range(len(self._atoms))) - placed
-        return table * nothing_holds(unplaced, len(self._atoms)), exact
+        unplaced = set(range(len(self.atoms))) - placed
+        return table * nothing_holds(unplaced, len(self.atoms)), exact
 
     def asked(self, world: World, plan: Plan) -> tuple[Asked, ...]:
         """Return what is asked in worlds of one layout, pair by pair."""
@@ -126,7 +126,7 @@ class TruthTables:
     def asked_of(self, world: World, seats: Mapping[str, Seat]) -> tuple[Asked, ...]:
         """Return what is asked of things that have seats, pair by pair."""
         groups: dict[tuple[Seat, Seat], list[tuple[int, Step]]] = defaultdict(list)
-        for number, atom in enumerate(self._atoms):
+        for number, atom in enumerate(self.atoms):
             step = asked_step(self._graph, world, seats, atom)
             if step is not None:
                 groups[step.referent, step.relatum].append((number, step))
@@ -184,7 +184,7 @@ def truth_of(formula: Formula, atoms: Sequence[Atom]) -> BoolArray:
     """Return whether a formula holds for each combination of its atoms being true or false: (2, …, 2)."""
     match formula:
         case Atom():
-            at = next(number for number, atom in enumerate(atoms) if atom is formula)
+            at = atoms.index(formula)
             held: BoolArray = np.array([False, True])
             return held.reshape([2 if axis == at else 1 for axis in range(len(atoms))])
         case Not(part=part):

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Sequence
 
 import numpy as np
 
 from qsrlang.arrays import FloatArray
-from qsrlang.language.syntax import Atom
 from qsrlang.mixtures.solving.tables import Asked, TruthTables, along, nothing_holds
 from qsrlang.mixtures.worlds.enumeration import MIN_REST, World
 from qsrlang.mixtures.worlds.supports import Seat
@@ -16,9 +14,7 @@ from qsrlang.mixtures.worlds.trees import Tree, Twig, tree_of
 from qsrlang.relations.graph import RelationGraph
 
 
-def tree_table(
-    graph: RelationGraph, names: tuple[str, ...], atoms: Sequence[Atom], tables: TruthTables
-) -> FloatArray | None:
+def tree_table(graph: RelationGraph, names: tuple[str, ...], tables: TruthTables) -> FloatArray | None:
     """Return P(atoms true or false) (2, …, 2) over all worlds; None where what is known of the names is no tree.
 
     T(X) = elsewhere x F(X) + sum_a share_a T_a(X) prod_Y T(Y) over the alternatives a of X and the things Y placed by
@@ -29,12 +25,12 @@ def tree_table(
     if tree is None:
         return None
     asked = {one.steps[0].referent: one for one in tables.asked_of(World(1.0), tree.seats)}
-    if sum([len(one.numbers) for one in asked.values()]) < len(atoms):
+    if sum([len(one.numbers) for one in asked.values()]) < len(tables.atoms):
         return None
     relata = {twig.step.referent: twig.step.relatum for twig in tree.twigs}
     if not all(_is_of(one, relata.get(referent)) for referent, one in asked.items()):
         return None
-    return _summed(tree, asked, tables, len(atoms))
+    return _summed(tree, asked, tables, len(tables.atoms))
 
 
 def _summed(tree: Tree, asked: dict[Seat, Asked], tables: TruthTables, count: int) -> FloatArray | None:

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from qsrlang.mixtures.queries import KnowledgeBase, parse_knowledge
+from qsrlang.mixtures.loading import parse_knowledge
+from qsrlang.mixtures.queries import KnowledgeBase
 from qsrlang.mixtures.solving.factors import Factors
 from qsrlang.mixtures.solving.paths import Paths
 from qsrlang.mixtures.solving.posterior import equations_ahead

@@ -120,4 +120,28 @@ def test_a_thousand_choices_are_no_work():
 def table_of(known, formula):
     node = parse_formula(formula)
     atoms = tuple(atoms_of(node))
-    return tree_table(known.graph, objects_of(node), atoms, TruthTables(known.graph, atoms, None))
+    return tree_table(known.graph, objects_of(node), TruthTables(known.graph, atoms, None))
+
+
+@given(questions(), st.lists(st.sampled_from(RELATIONS[:4]), min_size=1, max_size=2))
+@settings(max_examples=30)
+def test_several_formulas_are_told_together_as_one_by_one(question, more):
+    text, formula, assumed = question
+    known = qsr.parse_knowledge(HEAD + text)
+    formulas = [formula, *(f"{one}(A, M)" for one in more), f"¬({formula})"]
+    try:
+        alone = [known.prob(one, assumed) for one in formulas]
+    except qsr.ImpossibleConditionError:
+        with pytest.raises(qsr.ImpossibleConditionError):
+            known.prob_each(formulas, assumed)
+        return
+    for one, other in zip(known.prob_each(formulas, assumed), alone, strict=True):
+        assert (one.formula, one.method, one.assumed) == (other.formula, other.method, other.assumed)
+        assert one.value == pytest.approx(other.value, abs=1e-9)
+
+
+def test_formulas_that_make_no_tree_together_are_told_one_by_one():
+    known = qsr.parse_knowledge(TREE + "believe close-to(D, C). observe left-of(D, B).")
+    formulas = ["left-of(A, M)", "left-of(D, C)"]
+    assert known.prob_each(formulas) == tuple(known.prob(one) for one in formulas)
+    assert qsr.parse_knowledge(TREE).prob_each([]) == ()
