@@ -15,7 +15,8 @@ from qsrlang.mixtures.draws.uniforms import independent
 from qsrlang.mixtures.gaussian import fitted
 from qsrlang.mixtures.solving.weighing import log_mean_of, posterior_weights
 from qsrlang.mixtures.worlds.enumeration import World
-from qsrlang.mixtures.worlds.plans import Plan, planned_worlds
+from qsrlang.mixtures.worlds.planned import planned_worlds
+from qsrlang.mixtures.worlds.plans import Plan
 from qsrlang.mixtures.worlds.supports import Seat
 from qsrlang.relations.graph import RelationGraph
 

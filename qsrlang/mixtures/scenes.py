@@ -21,7 +21,8 @@ from qsrlang.mixtures.draws.events import Outlook
 from qsrlang.mixtures.draws.uniforms import independent
 from qsrlang.mixtures.solving.weighing import log_mean, log_mean_of
 from qsrlang.mixtures.worlds.enumeration import World
-from qsrlang.mixtures.worlds.plans import Plan, planned_worlds
+from qsrlang.mixtures.worlds.planned import planned_worlds
+from qsrlang.mixtures.worlds.plans import Plan
 from qsrlang.relations.graph import RelationGraph
 
 CHUNK = 8192

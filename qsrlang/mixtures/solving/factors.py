@@ -33,11 +33,13 @@ class Factors:
         seats = seats_read(steps[0])
         read = [column for seat in seats for column in self.layout.pose(seat)]
         columns, referent = np.array(read), np.array(self.layout.place(steps[0].referent))
-        made = {}
-        for key, step in {id(step.constraint): step for step in steps}.items():
+        made: dict[int, Factor] = {}
+        for step in steps:
+            if id(step.constraint) in made:
+                continue
             said, turning = self._told(step, seats, read[2])
             bends = self._is_free(*read) if turning is None else self._is_free(read[2]) and not turning.fixed
-            made[key] = Factor(referent, columns, said, turning, bends, self.orientation)
+            made[id(step.constraint)] = Factor(referent, columns, said, turning, bends, self.orientation)
         return [made[id(step.constraint)] for step in steps]
 
     def _is_free(self, *columns: int) -> bool:
@@ -46,8 +48,9 @@ class Factors:
     def _told(self, step: Step, seats: tuple[Seat, ...], heading: int) -> tuple[Conditional, Turning | None]:
         """Return what a step says, and that in the frame of its relatum, whose heading is in a column, if it can be."""
         key = Words.of(self.graph, step) or id(step.constraint), step.relatum.root.name
-        if key not in self._said:
+        told = self._said.get(key)
+        if told is None:
             said = make_conditional(self.graph, step, partial(compact_anchor, seats), self.viewer)
-            turning = said.turning(float(self.layout.mean[heading]), not self._is_free(heading))
-            self._said[key] = said, turning
-        return self._said[key]
+            told = said, said.turning(float(self.layout.mean[heading]), not self._is_free(heading))
+            self._said[key] = told
+        return told

@@ -16,7 +16,8 @@ from qsrlang.language.syntax import Atom
 from qsrlang.mixtures.gaussian import definite
 from qsrlang.mixtures.solving.posterior import Posterior, posterior_of, posteriors_of
 from qsrlang.mixtures.worlds.enumeration import MAX_WORLDS, World
-from qsrlang.mixtures.worlds.plans import Plan, PlannedWorlds, planned_worlds
+from qsrlang.mixtures.worlds.planned import PlannedWorlds, planned_worlds
+from qsrlang.mixtures.worlds.plans import Plan
 from qsrlang.mixtures.worlds.supports import Seat
 from qsrlang.relations.graph import RelationGraph
 

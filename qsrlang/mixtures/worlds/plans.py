@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections import Counter, defaultdict, deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple
 
 from qsrlang.language.syntax import Atom
 from qsrlang.mixtures.worlds.chains import needed_for
-from qsrlang.mixtures.worlds.enumeration import MAX_WORLDS, World, enumerate_worlds
+from qsrlang.mixtures.worlds.enumeration import World
 from qsrlang.mixtures.worlds.layout import Layout
 from qsrlang.mixtures.worlds.supports import Seat, Support, in_region, stated_regions, support_of
 from qsrlang.relations.graph import AtomicRelation, Constraint, Landmark, RelationGraph, Statement
@@ -72,32 +71,6 @@ class _Pattern:
         return Plan(plan.landmarks, steps, plan.seats, used, plan.layout)
 
 
-class PlannedWorlds(NamedTuple):
-    """Worlds that are possible at all, best first, each with its plan, and the prior mass of those dropped."""
-
-    worlds: tuple[World, ...]
-    plans: tuple[Plan, ...]
-    dropped: float
-
-
-def planned_worlds(
-    graph: RelationGraph,
-    targets: tuple[str, ...],
-    limit: int = MAX_WORLDS,
-    asked: Sequence[Atom] = (),
-    in_parts: bool = False,
-) -> PlannedWorlds:
-    """Return the worlds of targets and how each places them; a graph remembers what was planned."""
-
-    def planned() -> PlannedWorlds:
-        found = enumerate_worlds(graph, *targets, limit=limit, in_parts=in_parts)
-        worlds = tuple(world for world in found if world.weight > 0.0)
-        return PlannedWorlds(worlds, plan_worlds(graph, worlds, *targets, asked=asked), found.dropped)
-
-    spoken = tuple((atom.relation.text, *(one.text for one in atom.arguments)) for atom in asked)
-    return graph.derived((targets, limit, spoken, in_parts), planned, lambda found: len(found.worlds))
-
-
 def plan_world(graph: RelationGraph, world: World, *targets: str, asked: Sequence[Atom] = ()) -> Plan:
     """Return how a world places targets; those that no chain of it ties to a landmark have no seat."""
     (plan,) = plan_worlds(graph, (world,), *targets, asked=asked)
@@ -141,15 +114,26 @@ def _pattern(graph: RelationGraph, world: World, targets: tuple[str, ...], asked
         step = _step(graph, constraint, referent, regions, seats, places)
         bounds[constraint.referent] += [step.support.seat] if step.support else []
         steps.append(step)
-    known = [landmark for _, landmark in world.bindings]
-    bounding = filter(None, (asked_step(graph, world, seats, atom) for atom in asked))
-    known += [step.support.seat.root for step in (*steps, *bounding) if step.support]
-    landmarks = tuple({one.name: one for one in known}.values())
+    landmarks = landmarks_of(graph, world, seats, steps, asked)
     layout = Layout.of(landmarks, [step.referent.block for step in steps if step.places])
     plan = Plan(landmarks, tuple(steps), seats, tuple(used), layout)
     number = {id(constraint): at for at, constraint in enumerate(world.constraints)}
     order = tuple(number[id(constraint)] for constraint in used)
     return _Pattern(plan, order, tuple(number[id(step.constraint)] for step in steps))
+
+
+def landmarks_of(
+    graph: RelationGraph,
+    world: World,
+    seats: Mapping[str, Seat],
+    steps: Sequence[Step],
+    asked: Sequence[Atom],
+) -> tuple[Landmark, ...]:
+    """Return the landmarks that a world is about: those it names, and what bounds its steps and the atoms asked."""
+    known = [landmark for _, landmark in world.bindings]
+    bounding = filter(None, (asked_step(graph, world, seats, atom) for atom in asked))
+    known += [step.support.seat.root for step in (*steps, *bounding) if step.support]
+    return tuple({one.name: one for one in known}.values())
 
 
 def step_of(

@@ -9,14 +9,15 @@ from qsrlang.mixtures.worlds.evidence import telling
 from qsrlang.mixtures.worlds.plans import Step, step_of
 from qsrlang.mixtures.worlds.roles import instances_in_roles
 from qsrlang.mixtures.worlds.supports import Seat, in_region
-from qsrlang.relations.graph import Alternative, Choice, RelationGraph
+from qsrlang.relations.graph import Alternative, Authority, Choice, RelationGraph
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Twig:
-    """A step that places a thing, and the alternatives to its constraint."""
+    """A step that places a thing, and the choice of its constraint, with the alternatives to that."""
 
     step: Step
+    choice: Choice
     alternatives: tuple[Alternative, ...]
 
 
@@ -65,21 +66,28 @@ def _grown(graph: RelationGraph, name: str, seats: dict[str, Seat], twigs: list[
     for name, choice in reversed(way.items()):
         said = choice.alternatives[0].constraints[0]
         seats[name] = Seat(name, seats[said.relatum].root)
-        twigs.append(Twig(step_of(graph, said, seats), choice.alternatives))
+        twigs.append(Twig(step_of(graph, said, seats), choice, _alternatives(choice)))
     return True
+
+
+def _alternatives(choice: Choice) -> tuple[Alternative, ...]:
+    """Return the alternatives of a choice; those of scenes, whatever was counted, have a total share of 1."""
+    if choice.authority is not Authority.SCENE:
+        return choice.alternatives
+    total = sum([one.share for one in choice.alternatives])
+    return tuple([Alternative(one.share / total, one.constraints) for one in choice.alternatives])
 
 
 def _own_choice(graph: RelationGraph, name: str) -> Choice | None:
     """Return all that is said of a thing, if that is one choice between single constraints on one pair."""
     choices = graph.choices_for(name)
-    if len(choices) != 1 or instances_in_roles(graph, name):
+    if len(choices) != 1 or len(choices[0].governs) != 1 or instances_in_roles(graph, name):
         return None
-    said = [one.constraints for one in choices[0].alternatives]
-    first = said[0][0]
-    is_own = all(
-        len(each) == 1
-        and (each[0].referent, each[0].relatum, each[0].towards) == (name, first.relatum, None)
-        and not in_region(each[0])
-        for each in said
-    )
-    return choices[0] if is_own and choices[0].governs == {graph.pair_of(first)} else None
+    relatum = choices[0].alternatives[0].constraints[0].relatum
+    for alternative in choices[0].alternatives:
+        said = alternative.constraints[0]
+        if len(alternative.constraints) > 1 or said.referent != name or said.relatum != relatum:
+            return None
+        if said.towards is not None or in_region(said) or graph.pair_of(said) not in choices[0].governs:
+            return None
+    return choices[0]

@@ -9,7 +9,7 @@ from qsrlang.mixtures.solving.factors import Factors
 from qsrlang.mixtures.solving.paths import Paths
 from qsrlang.mixtures.solving.posterior import equations_ahead
 from qsrlang.mixtures.solving.system import DENSE, solve
-from qsrlang.mixtures.worlds.plans import planned_worlds
+from qsrlang.mixtures.worlds.planned import planned_worlds
 
 COUNT = 60
 RELATIONS = ("right-of", "left-of", "behind-of", "in-front-of")
