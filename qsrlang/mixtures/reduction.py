@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -32,42 +33,39 @@ def _merged(components: Sequence[Component], limit: int) -> list[Component]:
     kept = list(components)
     if len(kept) <= limit:
         return kept
-    weights = np.array([one.weight for one in kept])
-    means = np.array([one.mean for one in kept])
-    covariances = np.array([one.covariance for one in kept])
-    costs = np.full((len(kept), len(kept)), np.inf)
-    for at in range(len(kept) - 1):
-        costs[at, at + 1 :] = _costs(at, slice(at + 1, None), weights, means, covariances)
+    table = np.array([_row(one) for one in kept]).T
+    costs = _costs(table[:, :, None], table[:, None, :])
+    costs[np.tri(len(kept), dtype=bool)] = np.inf
     alive = np.ones(len(kept), dtype=bool)
     for _ in range(len(kept) - limit):
         first, second = divmod(int(costs.argmin()), len(kept))
         merged = _together(kept[first], kept[second])
-        kept[first], alive[second] = merged, False
-        weights[first], means[first], covariances[first] = merged.weight, merged.mean, merged.covariance
+        kept[first], alive[second], table[:, first] = merged, False, _row(merged)
         costs[second], costs[:, second] = np.inf, np.inf
-        fresh = np.where(alive, _costs(first, slice(None), weights, means, covariances), np.inf)
+        fresh = np.where(alive, _costs(table[:, [first]], table), np.inf)
         costs[first, first + 1 :], costs[:first, first] = fresh[first + 1 :], fresh[:first]
     return [one for one, is_alive in zip(kept, alive, strict=True) if is_alive]
 
 
-def _costs(
-    at: int, others: slice, weights: FloatArray, means: FloatArray, covariances: FloatArray
-) -> FloatArray:
-    """Return B(at, j) of the others."""
-    pair = weights[others] + weights[at]
-    share = (weights[others] / pair)[:, None, None]
-    off = means[others] - means[at]
-    both = (1.0 - share) * covariances[at] + share * covariances[others]
-    both = both + share * (1.0 - share) * off[:, :, None] * off[:, None, :]
-    alone = weights[at] * np.log(_determinants(covariances[at]))
-    rest = weights[others] * np.log(_determinants(covariances[others]))
-    return np.asarray(0.5 * (pair * np.log(_determinants(both)) - alone - rest))
+def _row(one: Component) -> tuple[float, ...]:
+    """Return weight w, mean x and y, covariance xx, xy and yy, and w log |S|."""
+    (xx, xy), (_, yy) = one.covariance.tolist()
+    x, y = one.mean.tolist()
+    return one.weight, x, y, xx, xy, yy, one.weight * math.log(xx * yy - xy * xy)
 
 
-def _determinants(covariances: FloatArray) -> FloatArray:
-    return np.asarray(
-        covariances[..., 0, 0] * covariances[..., 1, 1] - covariances[..., 0, 1] * covariances[..., 1, 0]
-    )
+def _costs(one: FloatArray, others: FloatArray) -> FloatArray:
+    """Return B of rows (7, …) as `_row` gives them, beside each other."""
+    weight, x, y, xx, xy, yy, own = one
+    weights, xs, ys, xxs, xys, yys, owns = others
+    pair = weight + weights
+    share = weights / pair
+    rest, across = 1.0 - share, share * (1.0 - share)
+    off_x, off_y = xs - x, ys - y
+    both_xx = rest * xx + share * xxs + across * off_x * off_x
+    both_yy = rest * yy + share * yys + across * off_y * off_y
+    both_xy = rest * xy + share * xys + across * off_x * off_y
+    return np.asarray(0.5 * (pair * np.log(both_xx * both_yy - both_xy * both_xy) - own - owns))
 
 
 def _together(one: Component, other: Component) -> Component:
