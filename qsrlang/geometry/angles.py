@@ -32,6 +32,11 @@ def relative_angle(origin: npt.ArrayLike, relatum: npt.ArrayLike, referent: npt.
     return wrap_positive(np.arctan2(seen[..., 1], seen[..., 0]) - np.arctan2(axis[..., 1], axis[..., 0]))
 
 
+def few(angles: FloatArray) -> FloatArray:
+    """Return angles (P,), or the first alone (1,) where all are the same, to be broadcast."""
+    return angles[:1] if len(angles) and (angles == angles[0]).all() else angles
+
+
 def unit(angle: npt.ArrayLike) -> FloatArray:
     """Return the unit vectors (..., 2) that point along the angles (...)."""
     angle = np.asarray(angle, dtype=np.float64)

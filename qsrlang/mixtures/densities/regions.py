@@ -9,7 +9,7 @@ import numpy as np
 
 from qsrlang import geometry
 from qsrlang.arrays import FloatArray
-from qsrlang.geometry.angles import TURN, rotation, unit
+from qsrlang.geometry.angles import TURN, few, rotation, unit
 from qsrlang.mixtures.densities.conditional import Conditional, Turning
 from qsrlang.mixtures.densities.standpoint import Standpoint
 from qsrlang.relations.graph import Constraint, RelationGraph
@@ -48,12 +48,14 @@ class BoxConditional:
     ) -> tuple[FloatArray, FloatArray]:
         """Return one draw (P, 2) from each state on the inner side of all lines, and the log (P,) of their share.
 
-        Lines are points (P, 2) and normals (P, 2) to the inside; where nothing is inside, the log is -inf.
+        Lines are points (P, 2) and normals to the inside (P, 2) or (1, 2); where nothing is inside, the log is -inf.
         """
-        turn = rotation(self.standpoint.box_yaws(states))
+        turn = rotation(few(self.standpoint.box_yaws(states)))
         corners = np.array([[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]]) * self._sides
         outline = self.standpoint.relatum.positions(states)[:, None] + corners @ turn.transpose(0, 2, 1)
-        points, normals = (np.ascontiguousarray(part) for part in zip(*lines, strict=True))
+        points, normals = np.empty((2, len(lines), len(states), 2))
+        for row, (point, normal) in enumerate(lines):
+            points[row], normals[row] = point, normal
         draws, areas = geometry.clipping.draw_inside(outline, points, normals, uniforms)
         with np.errstate(divide="ignore"):
             return draws, np.log(areas / (self.length * self.width))

@@ -9,7 +9,7 @@ from typing import Protocol, TypeAlias
 import numpy as np
 
 from qsrlang.arrays import FloatArray
-from qsrlang.geometry.angles import unit
+from qsrlang.geometry.angles import few, unit
 from qsrlang.mixtures.worlds.layout import Layout
 from qsrlang.mixtures.worlds.supports import Seat
 
@@ -20,7 +20,9 @@ class Bound(Protocol):
     """A convex part of the plane that depends on the state."""
 
     def lines(self, layout: Layout, states: FloatArray) -> Lines:
-        """Return its sides in each state (P, n): a point (P, 2) on each, and the normal (P, 2) to its inside."""
+        """Return its sides in each state (P, n): a point (P, 2) on each, and the normal to its inside (P, 2), or (1, 2)
+        where that is the same in all.
+        """
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +38,7 @@ class Wedge:
         """Return its two sides."""
         x, _ = layout.place(self.apex)
         points = states[:, x : x + 2]
-        low = states[:, layout.pose(self.turning)[2]] + self.start
+        low = few(states[:, layout.pose(self.turning)[2]]) + self.start
         high = low + self.width
         sides = ((-np.sin(low), np.cos(low)), (np.sin(high), -np.cos(high)))
         return tuple((points, np.stack(side, axis=-1)) for side in sides)
@@ -60,10 +62,10 @@ class Near:
         """Return its four sides."""
         (x, _), (centre, _, heading) = layout.place(self.apex), layout.pose(self.holder)
         apex, middle = states[:, x : x + 2], states[:, centre : centre + 2]
-        found = []
+        headings, found = few(states[:, heading]), []
         for turn in range(4):
-            outwards = unit(states[:, heading] + 0.5 * math.pi * turn)
+            outwards = unit(headings + 0.5 * math.pi * turn)
             side = middle + self.half[turn % 2] * outwards
-            reach = self.share * np.einsum("pd,pd->p", side - apex, outwards) + self.slack
+            reach = self.share * ((side - apex) * outwards).sum(axis=1) + self.slack
             found.append((apex + reach[:, None] * outwards, -outwards))
         return tuple(found)
