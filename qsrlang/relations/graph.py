@@ -93,9 +93,10 @@ class Constraint:
     @property
     def parts(self) -> int:
         """In how many parts it is split: the least `components` of the atoms that tell a direction, else of all."""
+        if self.fit is not None:
+            return 1
         directed = [atom.relation.components for atom in self.atoms if atom.relation.angle is not None]
-        others = [atom.relation.components for atom in self.atoms]
-        return 1 if self.fit is not None else min(directed or others, default=1)
+        return min(directed or [atom.relation.components for atom in self.atoms], default=1)
 
     def __hash__(self) -> int:
         return hash((self.referent, self.relatum, self.towards, self.statement.line, self.part))

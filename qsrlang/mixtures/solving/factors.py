@@ -38,12 +38,15 @@ class Factors:
             if id(step.constraint) in made:
                 continue
             said, turning = self._told(step, seats, read[2])
-            bends = self._is_free(*read) if turning is None else self._is_free(read[2]) and not turning.fixed
+            if turning is None:
+                bends = any(self._is_free(column) for column in read)
+            else:
+                bends = self._is_free(read[2]) and not turning.fixed
             made[id(step.constraint)] = Factor(referent, columns, said, turning, bends, self.orientation)
         return [made[id(step.constraint)] for step in steps]
 
-    def _is_free(self, *columns: int) -> bool:
-        return any(self.layout.free.item(column) for column in columns)
+    def _is_free(self, column: int) -> bool:
+        return bool(self.layout.free.item(column))
 
     def _told(self, step: Step, seats: tuple[Seat, ...], heading: int) -> tuple[Conditional, Turning | None]:
         """Return what a step says, and that in the frame of its relatum, whose heading is in a column, if it can be."""

@@ -30,6 +30,8 @@ class Step:
 
     def saying(self, constraint: Constraint) -> Step:
         """Return the same step with another constraint on the same pair."""
+        if constraint is self.constraint:
+            return self
         return Step(constraint, self.referent, self.relatum, self.second, self.support, self.places)
 
 
