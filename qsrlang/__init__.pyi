@@ -10,6 +10,7 @@ from .errors import (
     QSRError,
     UnansweredQueryError,
     UnknownNameError,
+    UnplaceableError,
     UnreachedTargetError,
     ValueRangeError,
 )
@@ -212,6 +213,7 @@ __all__ = [
     "Triangle",
     "UnansweredQueryError",
     "UnknownNameError",
+    "UnplaceableError",
     "UnreachedTargetError",
     "ValueRangeError",
     "ViewCone",

@@ -90,7 +90,11 @@ class NoNavigablePoseError(QSRError):
         )
 
 
-class UnreachedTargetError(QSRError):
+class UnplaceableError(QSRError):
+    """Knowledge that does not tell where something is."""
+
+
+class UnreachedTargetError(UnplaceableError):
     """A target that no chain of relations ties to a landmark; lists the chains that were tried."""
 
     def __init__(self, target: str, chains: Iterable[str]) -> None:
@@ -102,7 +106,7 @@ class UnreachedTargetError(QSRError):
         )
 
 
-class MissingFacingError(QSRError):
+class MissingFacingError(UnplaceableError):
     """A landmark without a heading where a frame of reference or a support's outline needs one."""
 
     def __init__(self, landmark: str, need: str) -> None:
@@ -112,7 +116,7 @@ class MissingFacingError(QSRError):
         )
 
 
-class NoRoomError(QSRError):
+class NoRoomError(UnplaceableError):
     """Relations that leave no room on their support."""
 
     def __init__(self, what: str, support: str) -> None:
@@ -122,7 +126,7 @@ class NoRoomError(QSRError):
         )
 
 
-class ImpossibleConditionError(QSRError):
+class ImpossibleConditionError(UnplaceableError):
     """What is given or required, and how many draws did not meet it."""
 
     def __init__(self, conditions: Sequence[str], draws: int) -> None:

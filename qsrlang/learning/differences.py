@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from qsrlang.arrays import FloatArray
-from qsrlang.errors import QSRError
+from qsrlang.errors import UnplaceableError
 from qsrlang.learning.rhythm import DIRECTIONS, direction_numbers
 from qsrlang.mixtures.gaussian import GaussianMixture
 from qsrlang.mixtures.queries import KnowledgeBase
@@ -60,7 +60,7 @@ def _mixtures(knowledge: KnowledgeBase) -> dict[Pair, GaussianMixture]:
             graph = replace(knowledge.graph, choices=(choice,), landmarks=(), requirements=())
             try:
                 found[referent, relatum] = KnowledgeBase(graph).where(referent, wrt=relatum).mixture
-            except QSRError:
+            except UnplaceableError:
                 continue
     return found
 
