@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from qsrlang.arrays import FloatArray
-from qsrlang.errors import ImpossibleConditionError
+from qsrlang.errors import ImpossibleConditionError, UnreachedTargetError
 from qsrlang.geometry.pose import Pose2
 from qsrlang.language.syntax import Atom, Formula, atoms_of
 from qsrlang.mixtures.draws.conditioning import Drawing, draw_scenes, effective_draws, ratio_error
@@ -16,6 +16,7 @@ from qsrlang.mixtures.solving.tables import MAX_ATOMS, TruthTables, truth_of
 from qsrlang.mixtures.solving.trees import tree_table
 from qsrlang.mixtures.solving.weighing import Assumed, Solved, solve_worlds
 from qsrlang.mixtures.weighed import Weighed
+from qsrlang.mixtures.worlds.chains import broken_chains, is_tied
 from qsrlang.mixtures.worlds.enumeration import MAX_WORLDS
 from qsrlang.relations.graph import RelationGraph
 
@@ -147,10 +148,14 @@ def prove(
     """Return P(formula | given, requirements) over worlds and places, with its proof.
 
     By truth tables of the stated densities where those tell; of one direction, with nothing assumed, by the Gaussian
-    of each world; else by weighted draws of the true densities. What no world places holds in no relation. Raises
-    ImpossibleConditionError, NoRoomError, MissingFacingError.
+    of each world; else by weighted draws of the true densities. What a world does not place holds in no relation there.
+    Raises UnreachedTargetError where no world places something, ImpossibleConditionError, NoRoomError,
+    MissingFacingError.
     """
     question = _Question.of(graph, formula, given)
+    for name in question.names:
+        if not is_tied(graph, name):
+            raise UnreachedTargetError(name, broken_chains(graph, name))
     found = _without_draws(graph, question, viewer, limit)
     return found or _by_draws(graph, question, drawing())
 

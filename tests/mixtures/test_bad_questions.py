@@ -46,3 +46,14 @@ def test_a_question_that_fails_loses_nothing():
         with pytest.raises(qsr.QSRError):
             KNOWN.ask(wrong)
     np.testing.assert_array_equal(KNOWN.where("Cup").means, before.means)
+
+
+@pytest.mark.parametrize("formula", ["left-of(B, A)", "¬left-of(B, A)", "left-of(C, D) ∧ left-of(A, M)"])
+def test_the_probability_of_what_nothing_ties_to_a_landmark_is_no_number(formula):
+    head = "static M. dynamic A, B, C, D. landmark m : M at (0 m, 0 m) facing 0 deg."
+    known = qsr.parse_knowledge(f"{head} observe left-of(A, M) ∧ left-of(C, D).")
+    assert known.prob("left-of(C, D)").value > 0.9
+    with pytest.raises(qsr.UnreachedTargetError, match="no chain of relations ties"):
+        known.prob(formula)
+    with pytest.raises(qsr.UnreachedTargetError, match="no chain of relations ties"):
+        known.prob("left-of(A, M)", given=formula)
