@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from qsrlang.arrays import FloatArray
@@ -11,13 +11,13 @@ from qsrlang.geometry.pose import Pose2
 from qsrlang.language.syntax import Atom, Formula, atoms_of
 from qsrlang.mixtures.draws.conditioning import Drawing, draw_scenes, effective_draws, ratio_error
 from qsrlang.mixtures.draws.conditions import Condition, assumed_atoms, conditions_on, objects_of
+from qsrlang.mixtures.manner import Manner
 from qsrlang.mixtures.solving.pairs import direction_probability
 from qsrlang.mixtures.solving.tables import MAX_ATOMS, TruthTables, truth_of
 from qsrlang.mixtures.solving.trees import tree_table
 from qsrlang.mixtures.solving.weighing import Assumed, Solved, solve_worlds
 from qsrlang.mixtures.weighed import Weighed
 from qsrlang.mixtures.worlds.chains import broken_chains, is_tied
-from qsrlang.mixtures.worlds.enumeration import MAX_WORLDS
 from qsrlang.relations.graph import RelationGraph
 
 EXACT, GAUSSIAN, DRAWS = "exact", "Gaussian", "draws"
@@ -67,30 +67,18 @@ class Proved:
     shares: Sequence[float]
 
 
-def probability(
-    graph: RelationGraph,
-    formula: Formula,
-    given: Formula | None,
-    viewer: Pose2 | None,
-    drawing: Callable[[], Drawing],
-    limit: int = MAX_WORLDS,
-) -> Probability:
+def probability(graph: RelationGraph, formula: Formula, given: Formula | None, how: Manner) -> Probability:
     """Return P(formula | given, requirements), as `prove` does; of trees without telling worlds apart."""
-    found = _of_tree(graph, (_Question.of(graph, formula, given),), viewer)
-    return found[0] if found else prove(graph, formula, given, viewer, drawing, limit).answer
+    found = _of_tree(graph, (_Question.of(graph, formula, given),), how.viewer)
+    return found[0] if found else prove(graph, formula, given, how).answer
 
 
 def probabilities(
-    graph: RelationGraph,
-    formulas: Sequence[Formula],
-    given: Formula | None,
-    viewer: Pose2 | None,
-    drawing: Callable[[], Drawing],
-    limit: int = MAX_WORLDS,
+    graph: RelationGraph, formulas: Sequence[Formula], given: Formula | None, how: Manner
 ) -> tuple[Probability, ...]:
     """Return P(formula | given, requirements) of several formulas; of trees all from one table."""
-    found = _of_tree(graph, [_Question.of(graph, one, given) for one in formulas], viewer)
-    return found or tuple(probability(graph, one, given, viewer, drawing, limit) for one in formulas)
+    found = _of_tree(graph, [_Question.of(graph, one, given) for one in formulas], how.viewer)
+    return found or tuple(probability(graph, one, given, how) for one in formulas)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -137,14 +125,7 @@ def _read_off(table: FloatArray, telling: _Telling, question: _Question) -> Prob
     return Probability(text_of(question.formula), min(true / whole, 1.0), EXACT, assumed=question.texts)
 
 
-def prove(
-    graph: RelationGraph,
-    formula: Formula,
-    given: Formula | None,
-    viewer: Pose2 | None,
-    drawing: Callable[[], Drawing],
-    limit: int = MAX_WORLDS,
-) -> Proved:
+def prove(graph: RelationGraph, formula: Formula, given: Formula | None, how: Manner) -> Proved:
     """Return P(formula | given, requirements) over worlds and places, with its proof.
 
     By truth tables of the stated densities where those tell; of one direction, with nothing assumed, by the Gaussian
@@ -156,8 +137,8 @@ def prove(
     for name in question.names:
         if not is_tied(graph, name):
             raise UnreachedTargetError(name, broken_chains(graph, name))
-    found = _without_draws(graph, question, viewer, limit)
-    return found or _by_draws(graph, question, drawing())
+    found = _without_draws(graph, question, how.viewer, how.bounds.worlds)
+    return found or _by_draws(graph, question, how.drawing())
 
 
 def _without_draws(

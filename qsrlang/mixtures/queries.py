@@ -154,7 +154,7 @@ class KnowledgeBase:
         how = Manner("exact", samples, rng, viewer, Bounds())
         nodes, assumed = [self._formula(one) for one in formulas], self._formula(given)
         if all(self._rooted(one, assumed) is self.graph for one in nodes):
-            return probabilities(self.graph, nodes, assumed, viewer, how.drawing, how.bounds.worlds)
+            return probabilities(self.graph, nodes, assumed, how)
         return tuple(self._told(probability, one, assumed, how) for one in nodes)
 
     def explain(
@@ -267,11 +267,15 @@ class KnowledgeBase:
         return in_frame(graph, target, wrt, place)
 
     def _told(
-        self, tell: Callable[..., _T], formula: Formula, given: str | Formula | None, how: Manner
+        self,
+        tell: Callable[[RelationGraph, Formula, Formula | None, Manner], _T],
+        formula: Formula,
+        given: str | Formula | None,
+        how: Manner,
     ) -> _T:
         assumed = self._formula(given)
         graph = self._rooted(formula, assumed)
-        return tell(graph, formula, assumed, how.viewer, how.drawing, how.bounds.worlds)
+        return tell(graph, formula, assumed, how)
 
     def _rooted(self, formula: Formula, given: Formula | None) -> RelationGraph:
         return rooted(self.graph, objects_of(formula, *([given] if given else [])))
