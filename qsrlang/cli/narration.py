@@ -25,8 +25,8 @@ def narrate_opening(console: Console, opening: Opening, seed: int) -> None:
     scenario, briefing = opening.scenario, opening.briefing
     console.print(f"[bold]{escape(scenario.title)}[/bold]", highlight=False)
     console.print(
-        f"Sought: {briefing.target}; arm {briefing.arm}, variant {opening.variant}, camera {scenario.camera_name}, "
-        f"robot {scenario.robot_name}, seed {seed}.",
+        f"Sought: {', '.join(briefing.targets)}; arm {briefing.arm}, variant {opening.variant}, "
+        f"camera {scenario.camera_name}, robot {scenario.robot_name}, seed {seed}.",
         highlight=False,
         markup=False,
     )
@@ -36,11 +36,10 @@ def narrate_opening(console: Console, opening: Opening, seed: int) -> None:
         f"and {limits.poses} looks.",
         highlight=False,
     )
-    if briefing.belief is None:
+    if not briefing.beliefs:
         console.print("It uses no relations.", highlight=False)
-    else:
-        title = f"It believes: where {briefing.target} is"
-        print_answer(briefing.belief, console, title)
+    for target, belief in zip(briefing.targets, briefing.beliefs, strict=False):
+        print_answer(belief, console, f"It believes: where {target} is")
 
 
 def narrate_step(
@@ -52,7 +51,7 @@ def narrate_step(
         f"looks from {_pose(step.pose)}: {step.travel:.1f} m to drive, {math.degrees(step.turn):.0f} deg to turn",
         f"because {_reason(opening, step)}",
         *(_weighed(step) if explain else ()),
-        _seen(step, opening.briefing.target),
+        _seen(step),
         f"clock {step.clock:.1f} s",
     ]
     if picture is not None:
@@ -102,15 +101,15 @@ def _terms(view: RankedView) -> str:
     )
 
 
-def _seen(step: SearchStep, target: str) -> str:
+def _seen(step: SearchStep) -> str:
     if not step.looked:
         return "the time ran out before the look was over"
+    kinds = {seen.kind for seen in step.detections}
+    missed = " and ".join(f"no {target}" for target in step.wanted if target not in kinds)
     if not step.detections:
-        return f"saw nothing it knows, no {target}"
+        return f"saw nothing it knows, {missed}"
     things = ", ".join(_thing(seen) for seen in step.detections)
-    return f"saw {things}" + (
-        "" if any(seen.kind == target for seen in step.detections) else f"; no {target}"
-    )
+    return f"saw {things}" + (f"; {missed}" if missed else "")
 
 
 def _thing(seen: Detection) -> str:
@@ -124,11 +123,11 @@ def narrate_end(console: Console, story: SearchStory) -> None:
 
 
 def outcome_table(story: SearchStory) -> Table:
-    """Return how the search ended: outcome, object, time [s], looks and travel [m]."""
+    """Return how the search ended: outcome, objects found, time [s], looks and travel [m]."""
     table = Table(title=f"\nSearch for {story.target}", title_justify="left")
     for heading in ("outcome", "object", "time [s]", "looks", "travel [m]"):
         table.add_column(escape(heading), justify="right")
-    name = story.detection.name if story.detection is not None else "-"
+    name = ", ".join(one.name for one in story.finds) or "-"
     outcome = story.result.verdict
     table.add_row(outcome, name, f"{story.seconds:.1f}", str(story.poses), f"{story.travel:.1f}")
     return table
@@ -142,14 +141,13 @@ def steps_table(story: SearchStory) -> Table:
         table.add_column(escape(heading), justify="left" if said else "right", no_wrap=not said)
     for step in story.steps:
         numbers = (str(step.number + 1), _pose(step.pose), f"{step.travel:.1f}", f"{step.clock:.1f}")
-        table.add_row(*numbers, escape(_reason(story.opening, step)), escape(_seen(step, story.target)))
+        table.add_row(*numbers, escape(_reason(story.opening, step)), escape(_seen(step)))
     return table
 
 
 def story_json(story: SearchStory, pictures: Sequence[Path]) -> dict[str, Any]:
     """Return the story as plain data: metres, radians, seconds, map frame."""
     opening = story.opening
-    belief = opening.briefing.belief
     return {
         "scenario": opening.scenario.name,
         "variant": opening.variant,
@@ -158,15 +156,15 @@ def story_json(story: SearchStory, pictures: Sequence[Path]) -> dict[str, Any]:
         "robot": opening.scenario.robot_name,
         "seed": story.seed,
         "trial": story.trial,
-        "target": story.target,
+        "targets": list(opening.briefing.targets),
         "found": story.found,
         "seconds": story.seconds,
         "verdict": story.result.verdict,
         "absence": story.result.absence,
         "poses": story.poses,
         "travel": story.travel,
-        "detection": _detection(story.detection) if story.detection is not None else None,
-        "belief": belief.to_json() if belief is not None else None,
+        "finds": [_detection(seen) for seen in story.finds],
+        "beliefs": [belief.to_json() for belief in opening.briefing.beliefs],
         "steps": [_step(step) for step in story.steps],
         "pictures": [str(path) for path in pictures],
     }
@@ -186,6 +184,7 @@ def _step(step: SearchStep) -> dict[str, Any]:
         "seconds": step.seconds,
         "clock": step.clock,
         "looked": step.looked,
+        "wanted": list(step.wanted),
         "detections": [_detection(seen) for seen in step.detections],
     }
 

@@ -34,7 +34,10 @@ RUNS = Path("runs")
 def search(
     scenario: ScenarioName,
     arm: Annotated[str, typer.Option(help="The search method, one of the scenario's arms.")] = "qsr",
-    target: Annotated[str | None, typer.Option(help="The class sought, the scenario's by default.")] = None,
+    target: Annotated[
+        list[str] | None,
+        typer.Option(help="The class sought, the scenario's by default; again for one of each of several."),
+    ] = None,
     seed: Seed = 0,
     trial: Annotated[
         int, typer.Option(min=0, help="Which trial of a comparison with this seed to replay.")
@@ -60,15 +63,19 @@ def search(
     days: Annotated[int, typer.Option(min=1, help="With --learn: how many days; those done are kept.")] = 7,
     form: OutputFormat = Format.TEXT,
 ) -> None:
-    """Search for an object once and tell every step: what is believed, where it looks, why, what it saw."""
+    """Search for an object, or for one of each of several classes, and tell every step.
+
+    What is believed, where it looks, why, what it saw.
+    """
     loaded = load_scenario(scenario, camera, robot, knowledge)
     if learn is not None:
-        if explain or trial or output is not None:
+        if explain or trial or output is not None or len(target or ()) > 1:
             raise typer.BadParameter(
-                "tells a line a day, without pictures: leave out --explain, --trial and --output",
+                "tells a line a day of one target, without pictures: leave out --explain, --trial, --output and a "
+                "second --target",
                 param_hint="--learn",
             )
-        tell_days(loaded, learn, days, target, arm, seed, variant, form)
+        tell_days(loaded, learn, days, target[0] if target else None, arm, seed, variant, form)
         return
     opening = open_search(loaded, target, arm, variant)
     folder = (

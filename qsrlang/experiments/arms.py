@@ -68,7 +68,7 @@ def seen_through(
         return world
     sight = Sight(scenario.camera, scenario.floor_height, place.voxels)
     aims = briefing.supports.centres + np.array([0.0, 0.0, 0.5 * place.voxels.resolution])
-    return NoisyWorld(world, scenario.noise, seeds, briefing.target, sight, aims)
+    return NoisyWorld(world, scenario.noise, seeds, briefing.targets, sight, aims)
 
 
 def run_trial(
@@ -79,4 +79,4 @@ def run_trial(
     watch: Watcher | None = None,
 ) -> SearchResult:
     """Return what a robot with this briefing does in the world, from where it stands."""
-    return search_world(world, briefing.planner, reachable, briefing.target, briefing.limits, seeds, watch)
+    return search_world(world, briefing.planner, reachable, briefing.targets, briefing.limits, seeds, watch)

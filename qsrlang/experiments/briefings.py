@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from qsrlang.arrays import FloatArray
-from qsrlang.errors import OutsideMapError, UnknownNameError, UnreachedTargetError
+from qsrlang.errors import OutsideMapError, UnknownNameError, UnreachedTargetError, ValueRangeError
 from qsrlang.experiments.goals import goal_of, weights_of
 from qsrlang.experiments.places import Place
 from qsrlang.experiments.presets import PlannerEntry
@@ -19,6 +19,7 @@ from qsrlang.maps.supports import Supports, find_supports
 from qsrlang.mixtures.answers import Where
 from qsrlang.mixtures.loading import load
 from qsrlang.mixtures.queries import KnowledgeBase
+from qsrlang.planning.loop import targets_of
 from qsrlang.planning.outcome import Limits
 from qsrlang.planning.planners.believing import BeliefPlanner
 from qsrlang.planning.planners.paper import QSRPlanner, RandomPlanner
@@ -31,37 +32,41 @@ KNOWING = ("qsr", *STRATEGIES)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Briefing:
-    """What the robot of an arm knows: the target's class, supports and their weights (K,), landmarks and beliefs.
+    """What the robot of an arm knows: the classes sought, supports and their weights (K,), landmarks and beliefs.
 
-    `landmarks` leaves out surfaces, whose places the supports show.
-
-    `belief` says where the statements place the target, map frame; it is None for arms that use no knowledge.
+    `landmarks` leaves out surfaces, whose places the supports show. `beliefs` say where the statements place each
+    target, map frame; there are none for arms that use no knowledge. Of several targets, `weights` are the mean.
     """
 
     arm: str
-    target: str
+    targets: tuple[str, ...]
     supports: Supports
     weights: FloatArray
-    belief: Where | None
+    beliefs: tuple[Where, ...]
     landmarks: tuple[Landmark, ...]
     cone: ViewCone
     limits: Limits
     planner: Planner
 
 
-def brief(scenario: Scenario, arms: Sequence[Arm], place: Place, target: str) -> tuple[Briefing, ...]:
+def brief(
+    scenario: Scenario, arms: Sequence[Arm], place: Place, target: str | Sequence[str]
+) -> tuple[Briefing, ...]:
     """Return the briefings of several arms in one place; supports are found once for each way to find them.
 
-    Raises UnreachedTargetError where an arm's knowledge ties the target to no landmark, and OutsideMapError
-    where a landmark lies outside the map.
+    Raises ValueRangeError for several targets of an arm without a belief, UnreachedTargetError where an arm's knowledge
+    ties a target to no landmark, and OutsideMapError where a landmark lies outside the map.
     """
     found: dict[str, Supports] = {}
-    briefings = []
+    briefings, targets = [], targets_of(target)
     for arm in arms:
+        if len(targets) > 1 and arm.planner not in STRATEGIES:
+            several = f"1; of several at once, arms with one of the planners {', '.join(STRATEGIES)}"
+            raise ValueRangeError(f"the number of targets of the arm '{arm.name}'", len(targets), several)
         key = arm.preset.supports.model_dump_json()
         if key not in found:
             found[key] = supports_of(scenario, arm.preset, place)
-        briefings.append(_briefing(scenario, arm, place, found[key], target))
+        briefings.append(_briefing(scenario, arm, place, found[key], targets))
     return tuple(briefings)
 
 
@@ -78,21 +83,23 @@ def supports_of(scenario: Scenario, preset: PlannerEntry, place: Place) -> Suppo
     )
 
 
-def _briefing(scenario: Scenario, arm: Arm, place: Place, supports: Supports, target: str) -> Briefing:
+def _briefing(
+    scenario: Scenario, arm: Arm, place: Place, supports: Supports, targets: tuple[str, ...]
+) -> Briefing:
     preset, cone, places = arm.preset, arm.preset.cone(), supports.centres[:, :2]
     known = known_to(scenario, arm, place) if arm.planner in KNOWING else None
-    belief = _belief(known, arm, target) if known is not None else None
-    weights = np.ones(len(places)) if belief is None else weights_of(preset, belief, places)
+    beliefs = () if known is None else tuple(_belief(known, arm, target) for target in targets)
+    weights = [weights_of(preset, belief, places) for belief in beliefs] or [np.ones(len(places))]
     return Briefing(
         arm=arm.name,
-        target=target,
+        targets=targets,
         supports=supports,
-        weights=weights,
-        belief=belief,
+        weights=np.mean(weights, axis=0),
+        beliefs=beliefs,
         landmarks=() if known is None else _shown(known),
         cone=cone,
         limits=arm.limits,
-        planner=_planner(scenario, arm, place, supports, weights, known, target),
+        planner=_planner(scenario, arm, place, supports, weights, known, targets),
     )
 
 
@@ -105,9 +112,9 @@ def _planner(
     arm: Arm,
     place: Place,
     supports: Supports,
-    weights: FloatArray,
+    weights: Sequence[FloatArray],
     known: KnowledgeBase | None,
-    target: str,
+    targets: tuple[str, ...],
 ) -> Planner:
     cone, places = arm.preset.cone(), supports.centres[:, :2]
     match arm.planner:
@@ -116,11 +123,14 @@ def _planner(
         case "planes":
             return QSRPlanner.of_planes(cone, places)
         case "qsr":
-            return QSRPlanner(cone, places, weights)
+            return QSRPlanner(cone, places, weights[0])
         case name:
             assert known is not None
-            goal = goal_of(scenario, arm, place, supports, weights, known, target)
-            return BeliefPlanner((goal,), scenario.robot, STRATEGIES[name])
+            goals = tuple(
+                goal_of(scenario, arm, place, supports, own, known, target)
+                for own, target in zip(weights, targets, strict=True)
+            )
+            return BeliefPlanner(goals, scenario.robot, STRATEGIES[name])
 
 
 def known_to(scenario: Scenario, arm: Arm, place: Place) -> KnowledgeBase:

@@ -17,10 +17,9 @@ def draw_steps(opening: Opening, steps: Sequence[SearchStep]) -> Figure:
         opening.place.occupancy,
         steps,
         cone=briefing.cone,
-        target=briefing.target,
         supports=briefing.supports,
         weights=briefing.weights,
-        mixture=briefing.belief.mixture if briefing.belief is not None else None,
+        mixtures=[belief.mixture for belief in briefing.beliefs],
         landmarks=briefing.landmarks,
     )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -44,18 +45,23 @@ class SearchStory:
 
     @property
     def target(self) -> str:
-        """The class that was sought."""
+        """The class that was sought; several with commas between."""
         return self.result.target
 
     @property
     def found(self) -> bool:
-        """Whether an object of the class was found."""
+        """Whether an object of every class sought was found."""
         return self.result.found
 
     @property
     def detection(self) -> Detection | None:
-        """The object that was found."""
+        """The object that was found, the last one of several."""
         return self.result.detection
+
+    @property
+    def finds(self) -> tuple[Detection, ...]:
+        """The objects that were found, one of each class at most."""
+        return self.result.finds
 
     @property
     def seconds(self) -> float:
@@ -80,7 +86,7 @@ class SearchStory:
 
 def open_search(
     scenario: str | Path | Scenario,
-    target: str | None = None,
+    target: str | Sequence[str] | None = None,
     planner: str = "qsr",
     variant: str | None = None,
 ) -> Opening:
@@ -94,16 +100,16 @@ def open_search(
 
 def search(
     scenario: str | Path | Scenario,
-    target: str | None = None,
+    target: str | Sequence[str] | None = None,
     planner: str = "qsr",
     seed: int = 0,
     variant: str | None = None,
     trial: int = 0,
     watch: Watcher | None = None,
 ) -> SearchStory:
-    """Search for an object in a scenario and return the whole story.
+    """Search for an object in a scenario, or for one of each of several classes, and return the whole story.
 
-    `target` is the class sought, the scenario's by default; `planner` names one of its arms. The same seed and
-    trial give the same search, and the same as that trial of `compare`. Raises QSRError.
+    `target` is the class sought, or several, the scenario's by default; `planner` names one of its arms. The same
+    seed and trial give the same search, and the same as that trial of `compare`. Raises QSRError.
     """
     return open_search(scenario, target, planner, variant).search(seed, trial, watch)

@@ -41,9 +41,7 @@ def search_world(
     stops short, the way is taken to be closed there, and the next one is planned around it. `watch` is called with
     every step once it is over.
     """
-    wanted = (target,) if isinstance(target, str) else tuple(dict.fromkeys(target))
-    if not wanted:
-        raise ValueRangeError("the number of targets", 0, "at least 1")
+    wanted = targets_of(target)
     run = _Run(navigation, planner, wanted, limits)
     while run.ending is None:
         try:
@@ -54,6 +52,14 @@ def search_world(
         if watch is not None:
             watch(run.steps[-1])
     return _outcome(run, wanted)
+
+
+def targets_of(target: str | Sequence[str]) -> tuple[str, ...]:
+    """Return the classes that are sought, each once; raises ValueRangeError where there are none."""
+    targets = (target,) if isinstance(target, str) else tuple(dict.fromkeys(target))
+    if not targets:
+        raise ValueRangeError("the number of targets", 0, "at least 1")
+    return targets
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,6 +141,7 @@ def _next_step(world: World, run: _Run, seeds: TrialSeeds) -> SearchStep:
         unit=choice.unit,
         terms=choice.terms,
         tilt=choice.tilt,
+        wanted=run.wanted,
     )
 
 

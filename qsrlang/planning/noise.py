@@ -24,7 +24,7 @@ VIEW_LENGTH, VIEW_ANGLE = 0.25, math.pi / 12.0
 @dataclass(frozen=True, slots=True)
 class Noise:
     """How a camera errs: it shows a share `detection_rate` of what is in view, and in a share `false_alarms` of its
-    looks the target where it is not."""
+    looks a target where it is not."""
 
     detection_rate: float = 1.0
     false_alarms: float = 0.0
@@ -45,7 +45,7 @@ class NoisyWorld:
     """A world seen through a camera with `noise`; what it draws depends on trial, view and object, and on nothing else.
 
     So all arms of a comparison meet the same errors, and to look twice from one view is of no use. False alarms for
-    the class `target` lie at places (K, 3) [m] in view by `sight`.
+    the classes of `targets` lie at places (K, 3) [m] in view by `sight`.
     """
 
     def __init__(
@@ -53,12 +53,12 @@ class NoisyWorld:
         world: World,
         noise: Noise,
         seeds: TrialSeeds,
-        target: str,
+        targets: tuple[str, ...],
         sight: Sight,
         places_map: npt.ArrayLike,
     ) -> None:
         self._world, self._noise, self._seeds = world, noise, seeds
-        self._target, self._sight = target, sight
+        self._targets, self._sight = targets, sight
         self._places: FloatArray = frozen_array("the places of false alarms", places_map, (None, 3))
 
     @property
@@ -87,7 +87,8 @@ class NoisyWorld:
         if not len(places):
             return []
         x, y, z = places[rng.integers(len(places))].tolist()
-        return [Detection(FALSE_ALARM, self._target, (x, y, z))]
+        kind = self._targets[0] if len(self._targets) == 1 else str(rng.choice(self._targets))
+        return [Detection(FALSE_ALARM, kind, (x, y, z))]
 
     def _draw(self, name: str) -> np.random.Generator:
         pose = self.robot_pose

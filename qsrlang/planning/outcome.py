@@ -48,9 +48,10 @@ class SearchStep:
 
     Candidates (N, 3), x, y [m] and yaw [rad], and the path (L, 2) [m] are in the map frame; `values` (N,) is what
     the planner thought each candidate worth. Travel [m], turn [rad] and seconds are of this step, `clock` is the
-    time since the search began [s]. `looked` is False where the time ran out before the look was over. `reached` is
-    where the robot came to stand: where something was in its way, not the end of the path. `terms` say why views
-    are worth their values in `unit`; `absence` is the probability, after the look, that nothing sought is here.
+    time since the search began [s]. `wanted` are the classes that were still sought. `looked` is False where the time
+    ran out before the look was over. `reached` is where the robot came to stand: where something was in its way, not
+    the end of the path. `terms` say why views are worth their values in `unit`; `absence` is the probability, after
+    the look, that nothing sought is here.
     """
 
     number: int
@@ -70,6 +71,7 @@ class SearchStep:
     terms: Terms | None = None
     absence: float = 0.0
     tilt: float | None = None
+    wanted: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         candidates = frozen_array("the candidates of a step", self.candidates, (None, 3))

@@ -34,18 +34,17 @@ def draw_search_step(
     steps: Sequence[SearchStep],
     *,
     cone: ViewCone,
-    target: str,
     supports: Supports | None = None,
     weights: npt.ArrayLike | None = None,
-    mixture: GaussianMixture | None = None,
+    mixtures: Iterable[GaussianMixture] = (),
     landmarks: Iterable[Landmark] = (),
 ) -> Figure:
     """Return a picture of the last of `steps`, the search so far from its first step on.
 
     The map in greys; support voxels coloured by `weights` (K,); the view cones of the candidates coloured by
     value, the chosen one bold; this drive as a line, earlier ones dotted; every pose looked from; what was
-    detected as a star with its name; the ellipses of `mixture`; in the caption the step, the clock, whether
-    an object of the class `target` was seen, and the value of the view and of the runner-up.
+    detected as a star with its name; the ellipses of `mixtures`; in the caption the step, the clock, whether
+    what is still sought was seen, and the value of the view and of the runner-up.
     Raises ValueRangeError where there is no step or the weights do not fit the supports.
     """
     if not steps:
@@ -66,11 +65,11 @@ def draw_search_step(
     add_views(axes, views)
     if rated:
         style.add_colour_bar(figure, bar_box(figure, axes, 0), style.VALUE_COLOURS, views.scale, VALUE_LABEL)
-    if mixture is not None:
+    for mixture in mixtures:
         layers.add_ellipses(axes, mixture.means, mixture.covariances, width=0.8)
     _add_way(axes, steps)
     _add_names(axes, step, views, tuple(landmarks), rated)
-    style.write_caption(axes, _caption(step, target, rated))
+    style.write_caption(axes, _caption(step, rated))
     return figure
 
 
@@ -114,16 +113,20 @@ def _runner_up(step: SearchStep) -> int:
     return next(index for index in step.ranking if index != step.chosen)
 
 
-def _caption(step: SearchStep, target: str, rated: bool) -> list[str]:
+def _caption(step: SearchStep, rated: bool) -> list[str]:
     return [
-        f"Step {step.number + 1}: {_outcome(step, target)}",
+        f"Step {step.number + 1}: {_outcome(step)}",
         f"clock {step.clock:.1f} s · {_views(step, rated)}",
     ]
 
 
-def _outcome(step: SearchStep, target: str) -> str:
+def _outcome(step: SearchStep) -> str:
     if not step.looked:
         return "time ran out before the look"
+    return ", ".join(_sighting(step, target) for target in step.wanted)
+
+
+def _sighting(step: SearchStep, target: str) -> str:
     seen = [detection.name for detection in step.detections if detection.kind == target]
     if not seen:
         return f"{target} not seen"

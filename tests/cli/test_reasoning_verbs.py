@@ -19,7 +19,7 @@ ASKED = {
     "explain right-of(Cup, Keyboard)?": ("prob right-of(Cup, Keyboard)", "holds in", "office/desk.qsr:27"),
     "landmarks Bottle?": ("Cup", "Keyboard", "Monitor"),
     "sample Bottle 20?": ("20 scenes", "Bottle", "Cup"),
-    "prob right-of(Cup, Keyboard)?": ("right-of(Cup, Keyboard)", "0.8", "Gaussian"),
+    "prob right-of(Cup, Keyboard)?": ("right-of(Cup, Keyboard)", "0.8", "exact"),
     "prob right-of(Cup, Keyboard) given close-to(Bottle, Cup)?": ("given", "0.8"),
     "check?": ("consistent",),
 }

@@ -101,7 +101,7 @@ def test_a_story_holds_all_that_a_picture_needs(cell):
     story = search(cell, seed=1)
     briefing = story.opening.briefing
     assert len(briefing.weights) == len(briefing.supports.centres)
-    assert briefing.belief is not None
+    assert len(briefing.beliefs) == 1
     assert [mark.name for mark in briefing.landmarks] == ["table-1"]
     assert story.opening.place.reachable.is_navigable(story.steps[0].path).all()
     assert story.found and story.detection is not None and story.detection.kind == "Cup"

@@ -39,13 +39,59 @@ def test_search_tells_every_step_and_draws_it(cell, tmp_path):
 def test_search_as_json_says_the_same(cell, tmp_path):
     result = run("search", cell, "--seed", 1, "--format", "json", "--output", tmp_path / "pictures")
     story = json.loads(result.stdout)
-    assert (story["scenario"], story["arm"], story["target"], story["found"]) == ("cell", "qsr", "Cup", True)
+    assert (story["scenario"], story["arm"], story["targets"], story["found"]) == (
+        "cell",
+        "qsr",
+        ["Cup"],
+        True,
+    )
     assert story["poses"] == len(story["steps"]) == len(story["pictures"])
     last = story["steps"][-1]
     assert last["clock"] == pytest.approx(story["seconds"])
-    assert story["detection"] in last["detections"]
+    assert story["finds"][0] in last["detections"]
     assert max(last["values"]) == last["value"]
-    assert story["belief"]["components"][0]["mean"] == pytest.approx([3.6, 1.8])
+    assert story["beliefs"][0]["components"][0]["mean"] == pytest.approx([3.6, 1.8])
+
+
+def add_a_plate(cell, change):
+    change(
+        cell,
+        "[variants]\n",
+        '[[placements]]\nname = "plate-1"\nkind = "Plate"\nx = 3.6\ny = 1.8\nsize = [0.2, 0.2, 0.02]\n[variants]\n',
+    )
+    change(cell, '"cup-2"]\none', '"cup-2", "plate-1"]\none')
+    change(cell, "[arms.random]", '[arms.belief]\nplanner = "belief"\npreset = "aware"\n[arms.random]')
+    change(
+        cell.with_name("cups.qsr"),
+        "believe left-of",
+        "observe 1 × in-front-of(Plate, Table) ~ normal((0 cm, 0 cm), (20 cm, 40 cm), 0).\nbelieve left-of",
+    )
+
+
+def test_one_of_each_of_several_classes_is_found(cell, change):
+    add_a_plate(cell, change)
+    several = ("--target", "Cup", "--target", "Plate", "--target", "Cup")
+    told = run("search", cell, "--arm", "belief", *several, "--seed", 2, "--no-pictures")
+    assert told.exit_code == 0, told.output
+    assert "Sought: Cup, Plate;" in told.output
+    assert "It believes: where Plate is" in told.output
+    result = run(
+        "search", cell, "--arm", "belief", *several, "--seed", 2, "--no-pictures", "--format", "json"
+    )
+    story = json.loads(result.stdout)
+    assert story["targets"] == ["Cup", "Plate"] and story["found"]
+    assert sorted(one["kind"] for one in story["finds"]) == ["Cup", "Plate"]
+    assert len(story["beliefs"]) == 2
+    for before, after in zip(story["steps"], story["steps"][1:], strict=False):
+        seen = {one["kind"] for one in before["detections"]}
+        assert after["wanted"] == [kind for kind in before["wanted"] if kind not in seen]
+
+
+def test_only_planners_that_keep_a_belief_seek_several(cell, change):
+    add_a_plate(cell, change)
+    result = run("search", cell, "--target", "Cup", "--target", "Plate", "--no-pictures")
+    assert isinstance(result.exception, QSRError)
+    assert "the number of targets of the arm 'qsr' is 2" in str(result.exception)
 
 
 def test_a_random_arm_has_no_reasons(cell, tmp_path, monkeypatch):

@@ -208,7 +208,7 @@ def test_errors_of_the_camera_are_those_of_view_and_thing():
         answers = []
         for trial in range(60):
             world = Flat(pose=Pose2(3.4, 4.2, 0.0))
-            noisy = NoisyWorld(world, noise, TrialSeeds(1, trial), "Cup", SIGHT, TABLES)
+            noisy = NoisyWorld(world, noise, TrialSeeds(1, trial), ("Cup",), SIGHT, TABLES)
             first, again = noisy.look(), noisy.look()
             assert first == again, "the same view errs in the same way"
             answers.append([one.name for one in first.detections])
@@ -225,7 +225,7 @@ def test_a_wary_robot_looks_again_where_a_trusting_one_takes_a_false_alarm():
     for name, assumed in (("trusting", 0.0), ("wary", 0.1)):
         wrong[name] = 0
         for trial in range(12):
-            noisy = NoisyWorld(Flat(()), Noise(1.0, 0.3), TrialSeeds(5, trial), "Cup", SIGHT, TABLES)
+            noisy = NoisyWorld(Flat(()), Noise(1.0, 0.3), TrialSeeds(5, trial), ("Cup",), SIGHT, TABLES)
             made = goal(detector=replace(DETECTOR, false_alarms=assumed, confidence=0.99))
             result = run(noisy, [made], limits=Limits(60.0, 40, 20), trial=trial)
             wrong[name] += result.found

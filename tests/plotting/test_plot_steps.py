@@ -40,11 +40,12 @@ def _step(number=0, count=20, *, same=False, looked=True, detections=(), seed=0)
     return SearchStep(
         number=number, origin=origin, candidates=candidates, values=values, chosen=chosen, path=path, travel=3.0,
         turn=1.0, seconds=12.0, clock=12.0 * (number + 1) + 0.25, looked=looked, detections=detections, reached=origin,
+        wanted=("Cup",),
     )  # fmt: skip
 
 
 def _draw(*steps, cone=CONE, **named):
-    return draw_search_step(GRID, steps, cone=cone, target="Cup", **named)
+    return draw_search_step(GRID, steps, cone=cone, **named)
 
 
 def _lines(figure, gid):
@@ -172,7 +173,7 @@ def test_a_sector_is_tied_to_the_robot():
 
 
 def test_weights_and_belief_are_drawn_with_a_bar_for_each_scale():
-    figure = _draw(_step(), supports=SUPPORTS, weights=WEIGHTS, mixture=MIXTURE)
+    figure = _draw(_step(), supports=SUPPORTS, weights=WEIGHTS, mixtures=[MIXTURE])
     titles = [axes.get_title(loc="left") for axes in figure.axes[1:]]
     assert sorted(titles) == ["value of\nthe view", "voxel\nweight"]
     sigma = [patch.width for patch in figure.axes[0].patches if patch.get_gid() == "sigma-1"]
