@@ -2,34 +2,61 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from heapq import heappop, heappush
 from itertools import count
-from typing import NamedTuple, TypeAlias
+from typing import NamedTuple
 
 from qsrlang.language.syntax import Atom
 from qsrlang.mixtures.worlds.drafts import MIN_SHARE, Outcome
 from qsrlang.mixtures.worlds.enumeration import MIN_REST, World, Worlds
 from qsrlang.mixtures.worlds.layout import Layout
 from qsrlang.mixtures.worlds.plans import Plan, Step, landmarks_of
-from qsrlang.mixtures.worlds.supports import Seat
 from qsrlang.mixtures.worlds.trees import Tree, Twig
-from qsrlang.relations.graph import Alternative, Constraint, Landmark, RelationGraph
+from qsrlang.relations.graph import Constraint, Landmark, RelationGraph
 
 
 class Option(NamedTuple):
-    """One way to decide about a thing: its share of the mass, and of the greatest share; the step that places it, None
-    where it is elsewhere; and what is decided by that.
+    """One way to decide about a thing: its name, the share of the mass, and of the greatest share; the step that places
+    it, None where it is elsewhere; and what is decided by that.
     """
 
+    name: str
     share: float
     likeness: float
     step: Step | None
     decided: tuple[tuple[float, Outcome], ...]
 
 
-Picks: TypeAlias = "tuple[int, Option, Picks] | None"
+class _Branch(NamedTuple):
+    """Decisions on the first `at` things of a tree: the last one `taken`, after those of `before`.
+
+    Of branches, as tuples, the first is the best: by likeness, then by depth. `reached` has a bit for each thing to be
+    looked at.
+    """
+
+    unlikeness: float
+    shallowness: int
+    number: int
+    weight: float
+    at: int
+    reached: int
+    taken: Option | None = None
+    before: _Branch | None = None
+
+    @property
+    def is_reached(self) -> bool:
+        """Whether the next thing is one to be looked at."""
+        return bool(self.reached >> self.at & 1)
+
+    def options(self) -> list[Option]:
+        """Return all options that were taken, from the first to the last."""
+        found, branch = [], self
+        while branch.taken is not None and branch.before is not None:
+            found.append(branch.taken)
+            branch = branch.before
+        return found[::-1]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -58,89 +85,91 @@ class Branching:
     def worlds(self, limit: int) -> Worlds:
         """Return worlds, best first, in the order of `enumerate_worlds` but for ties."""
         found: list[World] = []
-        number, rest = count(), 1.0
+        numbers, rest = count(), 1.0
         wanted = sum([1 << at for at, name in enumerate(self.names) if name in self.targets])
-        waiting: list[tuple[float, int, int, float, int, int, Picks]] = [
-            (-1.0, 0, next(number), 1.0, 0, wanted, None)
-        ]
+        waiting = [_Branch(-1.0, 0, next(numbers), 1.0, 0, wanted)]
         while waiting and len(found) < limit and rest > MIN_REST:
-            unlikeness, depth, _, weight, at, reached, picks = heappop(waiting)
-            while at < len(self.names) and not (reached >> at & 1 and len(self.options[at]) > 1):
-                if reached >> at & 1:
-                    (only,) = self.options[at]
-                    weight, reached, picks = (
-                        weight * only.share,
-                        self._reach(reached, at, only),
-                        (at, only, picks),
-                    )
-                at += 1
-            if at == len(self.names):
-                found.append(self._world(weight, picks))
-                rest -= weight
+            branch = self._forced(heappop(waiting))
+            if branch.at == len(self.names):
+                found.append(self._world(branch))
+                rest -= branch.weight
                 continue
-            for option in self.options[at]:
-                after = (at + 1, self._reach(reached, at, option), (at, option, picks))
-                likeness = unlikeness * option.likeness
-                heappush(waiting, (likeness, depth - 1, next(number), weight * option.share, *after))
+            for option in self.options[branch.at]:
+                heappush(waiting, self._taking(branch, option, next(numbers)))
         return Worlds(tuple(found), max(rest, 0.0) if waiting else 0.0)
 
-    def _reach(self, reached: int, at: int, option: Option) -> int:
-        parent = self.parents[at]
-        return reached if option.step is None or parent is None else reached | 1 << parent
+    def _forced(self, branch: _Branch) -> _Branch:
+        """Return a branch at the next thing to be looked at of which something is open."""
+        while branch.at < len(self.names):
+            options = self.options[branch.at]
+            if not branch.is_reached:
+                branch = branch._replace(at=branch.at + 1)
+            elif len(options) == 1:
+                branch = self._taking(branch, options[0], branch.number)
+            else:
+                break
+        return branch
 
-    def _world(self, weight: float, picks: Picks) -> World:
-        taken = [*_unrolled(picks)][::-1]
+    def _taking(self, branch: _Branch, option: Option, number: int) -> _Branch:
+        parent = self.parents[branch.at]
+        return _Branch(
+            branch.unlikeness * option.likeness,
+            branch.shallowness - 1,
+            number,
+            branch.weight * option.share,
+            branch.at + 1,
+            branch.reached if option.step is None or parent is None else branch.reached | 1 << parent,
+            option,
+            branch,
+        )
+
+    def _world(self, branch: _Branch) -> World:
+        taken = branch.options()
+        steps = [option.step for option in taken if option.step is not None]
         bindings: dict[str, Landmark] = {}
-        decided: list[tuple[float, Outcome]] = []
-        for at, option in taken:
-            decided += option.decided
-            if option.step is not None and self.parents[at] is None:
-                _bind(option.step.constraint.relatum, option.step.relatum, bindings, decided)
-        for name in self.targets:
-            if self.tree.seats[name].is_landmark:
-                _bind(name, self.tree.seats[name], bindings, decided)
-        steps = [option.step for _, option in taken]
+        decided = [one for option in taken for one in option.decided]
+        names = [step.constraint.relatum for step in steps if step.relatum.is_landmark]
+        for name in (*names, *self.targets):
+            seat = self.tree.seats[name]
+            if seat.is_landmark and name not in bindings:
+                bindings[name] = seat.root
+                decided.append((1.0, seat.root))
         return World(
-            weight,
-            tuple([step.constraint for step in steps if step is not None]),
+            branch.weight,
+            tuple([step.constraint for step in steps]),
             tuple(bindings.items()),
-            absent=tuple([self.names[at] for at, option in taken if option.step is None]),
+            absent=tuple([option.name for option in taken if option.step is None]),
             decided=tuple(decided),
         )
 
 
-def _unrolled(picks: Picks) -> Iterator[tuple[int, Option]]:
-    while picks is not None:
-        at, option, picks = picks
-        yield at, option
-
-
-def _bind(name: str, seat: Seat, bindings: dict[str, Landmark], decided: list[tuple[float, Outcome]]) -> None:
-    if name not in bindings:
-        bindings[name] = seat.root
-        decided.append((1.0, seat.root))
-
-
 def _options(twig: Twig, in_parts: bool) -> tuple[Option, ...]:
+    name = twig.step.constraint.referent
     alternatives = [one for one in twig.alternatives if one.share > 0.0]
     rest = 1.0 - sum([one.share for one in alternatives])
     is_open = rest > MIN_SHARE
     greatest = max([one.share for one in alternatives] + [rest] * is_open)
-    options = [Option(rest, rest / greatest, None, ((rest, twig.choice),))] if is_open else []
+    options = [Option(name, rest, rest / greatest, None, ((rest, twig.choice),))] if is_open else []
     for one in alternatives:
-        options += _parts(twig.step, one, one.share / greatest, in_parts)
+        whole = Option(
+            name, one.share, one.share / greatest, twig.step.saying(one.constraints[0]), ((one.share, one),)
+        )
+        options += _parts(whole, one.constraints[0]) if in_parts else [whole]
     return tuple(options)
 
 
-def _parts(step: Step, alternative: Alternative, likeness: float, in_parts: bool) -> list[Option]:
-    (said,) = alternative.constraints
-    decided = (alternative.share, alternative)
-    if not in_parts or said.parts == 1:
-        return [Option(alternative.share, likeness, step.saying(said), (decided,))]
-    number = said.parts
+def _parts(whole: Option, said: Constraint) -> list[Option]:
+    """Return the parts of equal mass that an option is split into, each as likely as the whole."""
+    number, step = said.parts, whole.step
+    if number == 1 or step is None:
+        return [whole]
     parts = [replace(said, part=(at, number)) for at in range(number)]
     return [
-        Option(alternative.share / number, likeness, step.saying(one), (decided, (1.0 / number, one)))
+        whole._replace(
+            share=whole.share / number,
+            step=step.saying(one),
+            decided=(*whole.decided, (1.0 / number, one)),
+        )
         for one in parts
     ]
 
