@@ -186,11 +186,11 @@ class Ground:
         actions = problem.agent.policy_model.get_all_actions()
         motions = {tuple(one.motion[:2]): one for one in actions if isinstance(one, MotionAction)}
         cells = np.array([(x, y) for x in range(SIDE) for y in range(SIDE) if (x, y) not in blocked])
-        beside_each = np.array(
-            [tuple(move) in motions for move in np.reshape(cells[None] - cells[:, None], (-1, 2))]
-        )
+        moves = cells[None] - cells[:, None] + SIDE
+        allowed = np.zeros((2 * SIDE + 1, 2 * SIDE + 1), dtype=bool)
+        allowed[tuple(np.array(list(motions)).T + SIDE)] = True
         steps, before = shortest_path(
-            csr_array(beside_each.reshape(len(cells), -1)), unweighted=True, return_predecessors=True
+            csr_array(allowed[moves[..., 0], moves[..., 1]]), unweighted=True, return_predecessors=True
         )
         columns, rows = np.indices((SIDE, SIDE))
         grid = np.column_stack([columns.ravel(), rows.ravel()])
