@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -13,6 +12,7 @@ import qsrlang as qsr
 from qsrlang.experiments.places import build_world, read_place
 from qsrlang.maps.ways import Ways
 from qsrlang.planning.motion import first_costs
+from qsrlang.planning.threads import processors
 
 SEED = 1
 ARMS = ("qsr", "belief", "nearest", "index", "tour", "rollout", "rollout-drawn", "rollout-even")
@@ -23,7 +23,7 @@ POSES = 40_000
 
 
 def compared(scenario: qsr.Scenario, arms: Sequence[str], trials: int, variant: str) -> qsr.Comparison:
-    return qsr.compare(scenario, arms, trials, SEED, variant, processes=os.cpu_count() or 1)
+    return qsr.compare(scenario, arms, trials, SEED, variant, processes=processors())
 
 
 def hindsight(scenario: qsr.Scenario, variant: str) -> float:

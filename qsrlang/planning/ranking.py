@@ -35,7 +35,7 @@ DETECTOR = Detector()
 LATTICE = Lattice(spacing=0.5, headings=24, offered=200)
 PAPER_CONE = Triangle(3.0, 1.0)
 PAPER_FLOOR, PAPER_GAIN = 1.0, 10.0
-DOUBT = Doubt(floor=0.3)
+DOUBT = Doubt(floor=0.3, loose=0.5, stretch=3.0)
 MAX_RANKED = 1_000
 
 
