@@ -40,7 +40,7 @@ def follow_index(problem: ViewProblem, depth: int, powers: tuple[float, ...] = (
 
 def follow_orders(problem: ViewProblem, orders: IntArray) -> FloatArray:
     """Return `ViewProblem.cost_of` each row of views (T, L), which a -1 ends: (T,) [s]."""
-    tables, believed = _tables(problem)
+    tables, believed = _tables(merged(problem))
     costs = np.empty(len(orders))
     over_rows(
         lambda first, last: _follow_orders(orders, tables, believed, problem.seconds, costs, first, last),
