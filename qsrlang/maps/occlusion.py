@@ -29,7 +29,7 @@ def clear_rays(grid: VoxelGrid, starts_map: npt.ArrayLike, ends_map: npt.ArrayLi
     return clear
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _look(voxels, starts, ends, clear):  # type: ignore[no-untyped-def]
     for n in range(len(starts)):
         x, y, z = starts[n, 0], starts[n, 1], starts[n, 2]
