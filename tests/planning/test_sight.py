@@ -165,7 +165,7 @@ def test_numpy_and_compiled_kernels_see_the_same(seed, thick):
     planes, eyes = planes_of(poses, CAMERA, 0.0, extent), eyes_of(poses, CAMERA, 0.0)
     plain, compiled = np.empty((10, 80), dtype=bool), np.empty((10, 80), dtype=bool)
     mark_plainly(planes, eyes, points, sight.voxels, plain)
-    mark_in_view(planes, eyes, points, sight.voxels, compiled)
+    mark_in_view(planes, eyes, sight.reach, points, sight.voxels, compiled)
     np.testing.assert_array_equal(plain, compiled)
 
 
