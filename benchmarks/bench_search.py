@@ -12,7 +12,7 @@ import subprocess
 from pathlib import Path
 
 import numpy as np
-from kitchen_searches import CASES, tell_case, tell_knowledge, tell_noise
+from kitchen_searches import CASES, DRAWN, tell_case, tell_knowledge, tell_noise
 from numba import njit
 from random_rooms import excesses
 from timing import best_of
@@ -163,6 +163,7 @@ def bench_pomdp(options: argparse.Namespace) -> None:
         )
         return
     command = [str(PEERS), str(HERE / "peer_pomdp.py"), "--seeds", str(options.seeds)]
+    command += ["--kept", str(options.kept)] if options.kept else []
     subprocess.run(command, check=True, env={**os.environ, "SDL_VIDEODRIVER": "dummy"})
 
 
@@ -173,7 +174,7 @@ def bench_kitchen(options: argparse.Namespace) -> None:
     for variant, camera in CASES:
         result = tell_case(variant, camera, options.trials)
         if options.figures:
-            times = {arm: [t.seconds if t.found else np.inf for t in result.of(arm)] for arm in result.arms}
+            times = {arm: [t.seconds if t.found else np.inf for t in result.of(arm)] for arm in DRAWN}
             figure = qsr.draw_found_by_time(times, 120.0)
             qsr.save_figure(figure, IMAGES / f"search-found-{variant}-{camera}.png")
     knowledge, noise = tell_knowledge(options.trials // 4), tell_noise(options.trials // 4)
@@ -195,6 +196,7 @@ def main() -> None:
     parser.add_argument("--only", nargs="+", choices=PARTS, default=PARTS)
     parser.add_argument("--trials", type=int, default=200)
     parser.add_argument("--seeds", type=int, default=20)
+    parser.add_argument("--kept", type=Path, help="a file of POUCT's finished runs: read first, and added to")
     parser.add_argument("--figures", action="store_true")
     options = parser.parse_args()
     if "kernels" in options.only:

@@ -16,6 +16,7 @@ from qsrlang.planning.threads import processors
 
 SEED = 1
 ARMS = ("qsr", "belief", "nearest", "index", "tour", "rollout", "rollout-drawn", "rollout-even")
+DRAWN = ("qsr", "belief", "rollout", "rollout-even")
 CASES = (("A", "narrow"), ("B", "narrow"), ("C", "wide"), ("C", "narrow"))
 SHIFTS = (0.0, 0.25, 0.5, 1.0, 2.0)
 RATES, ALARMS = (1.0, 0.9, 0.7, 0.5), (0.0, 0.02, 0.1)
