@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -13,9 +12,11 @@ import qsrlang as qsr
 from qsrlang.experiments.places import build_world, read_place
 from qsrlang.maps.ways import Ways
 from qsrlang.planning.motion import first_costs
+from qsrlang.planning.threads import processors
 
 SEED = 1
 ARMS = ("qsr", "belief", "nearest", "index", "tour", "rollout", "rollout-drawn", "rollout-even")
+DRAWN = ("qsr", "belief", "rollout", "rollout-even")
 CASES = (("A", "narrow"), ("B", "narrow"), ("C", "wide"), ("C", "narrow"))
 SHIFTS = (0.0, 0.25, 0.5, 1.0, 2.0)
 RATES, ALARMS = (1.0, 0.9, 0.7, 0.5), (0.0, 0.02, 0.1)
@@ -23,7 +24,7 @@ POSES = 40_000
 
 
 def compared(scenario: qsr.Scenario, arms: Sequence[str], trials: int, variant: str) -> qsr.Comparison:
-    return qsr.compare(scenario, arms, trials, SEED, variant, processes=os.cpu_count() or 1)
+    return qsr.compare(scenario, arms, trials, SEED, variant, processes=processors())
 
 
 def hindsight(scenario: qsr.Scenario, variant: str) -> float:

@@ -12,10 +12,12 @@ from __future__ import annotations
 import argparse
 import contextlib
 import io
+import json
 import math
 import random
 import time
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from pathlib import Path
 
 import numpy as np
 import pomdp_py
@@ -73,7 +75,7 @@ def landmark_prior(problem: MosOOPOMDP) -> dict[int, dict[tuple[int, int], float
 
 @dataclass
 class Episode:
-    """A run in one world: acts, counts the steps, and adds up the time spent planning."""
+    """A run in one world: acts, counts the steps, and adds up the processor time spent planning [s]."""
 
     problem: MosOOPOMDP
     planner: object
@@ -103,9 +105,9 @@ class Episode:
         self.steps += 1
 
     def timed(self, choose):
-        begin = time.perf_counter()
+        begin = time.process_time()
         choice = choose()
-        self.planning += time.perf_counter() - begin
+        self.planning += time.process_time() - begin
         self.decisions += 1
         return choice
 
@@ -184,11 +186,11 @@ class Ground:
         actions = problem.agent.policy_model.get_all_actions()
         motions = {tuple(one.motion[:2]): one for one in actions if isinstance(one, MotionAction)}
         cells = np.array([(x, y) for x in range(SIDE) for y in range(SIDE) if (x, y) not in blocked])
-        beside_each = np.array(
-            [tuple(move) in motions for move in np.reshape(cells[None] - cells[:, None], (-1, 2))]
-        )
+        moves = cells[None] - cells[:, None] + SIDE
+        allowed = np.zeros((2 * SIDE + 1, 2 * SIDE + 1), dtype=bool)
+        allowed[tuple(np.array(list(motions)).T + SIDE)] = True
         steps, before = shortest_path(
-            csr_array(beside_each.reshape(len(cells), -1)), unweighted=True, return_predecessors=True
+            csr_array(allowed[moves[..., 0], moves[..., 1]]), unweighted=True, return_predecessors=True
         )
         columns, rows = np.indices((SIDE, SIDE))
         grid = np.column_stack([columns.ravel(), rows.ravel()])
@@ -245,6 +247,91 @@ def plan(episode: Episode, ground: Ground) -> list[object]:
     return [*ground.way(here, int(np.argmax(values))), Look]
 
 
+@dataclass(frozen=True)
+class Run:
+    """What became of an episode: its steps, its decisions, and the processor time they took [s]."""
+
+    steps: int
+    planning: float
+    decisions: int
+
+    @classmethod
+    def of(cls, episode: Episode) -> Run:
+        return cls(episode.steps, episode.planning, episode.decisions)
+
+
+@dataclass(frozen=True)
+class Setting:
+    """How POUCT is run: by which prior, with how many simulations, and what its rollouts follow."""
+
+    prior: str
+    simulations: int
+    rollouts: str
+
+    def __str__(self) -> str:
+        return f"POUCT, {self.simulations} simulations, {self.rollouts} rollouts"
+
+    def play(self, seed: int) -> Run:
+        with contextlib.redirect_stdout(io.StringIO()):
+            return Run.of(play_pouct(world(seed, self.prior), self.simulations, self.rollouts == "heuristic"))
+
+
+class Kept:
+    """The runs of POUCT in a file of one JSON object a line, so that a run that was stopped goes on where it was."""
+
+    def __init__(self, path: Path | None) -> None:
+        self._path = path
+        lines = path.read_text().splitlines() if path is not None and path.is_file() else []
+        told = [json.loads(line) for line in lines]
+        self._runs = {(Setting(**one["setting"]), one["seed"]): Run(**one["run"]) for one in told}
+
+    def played(self, setting: Setting, seed: int) -> Run:
+        if (setting, seed) not in self._runs:
+            run = self._runs[setting, seed] = setting.play(seed)
+            self._write({"setting": asdict(setting), "seed": seed, "run": asdict(run)})
+        return self._runs[setting, seed]
+
+    def _write(self, line: dict[str, object]) -> None:
+        if self._path is not None:
+            with self._path.open("a") as out:
+                out.write(json.dumps(line) + "\n")
+
+
+def play_prior(prior: str, seeds: int) -> list[Run]:
+    """Return our runs, after one that compiles the kernels."""
+    with contextlib.redirect_stdout(io.StringIO()):
+        play_ours(world(0, prior))
+        return [Run.of(play_ours(world(seed, prior))) for seed in range(seeds)]
+
+
+def steps_of(runs: list[Run]) -> np.ndarray:
+    return np.array([run.steps for run in runs], dtype=float)
+
+
+def milliseconds(runs: list[Run]) -> float:
+    return 1e3 * sum(run.planning for run in runs) / sum(run.decisions for run in runs)
+
+
+def tell_ours(prior: str, ours: list[Run]) -> None:
+    print(f"  {prior} prior, {SIDE} x {SIDE}, {OBJECTS} object, {len(ours)} seeds; processor time")
+    print(
+        f"    ours: rollout                                {steps_of(ours).mean():6.2f} steps  "
+        f"{milliseconds(ours):8.2f} ms a decision",
+        flush=True,
+    )
+
+
+def tell_theirs(setting: Setting, theirs: list[Run], ours: list[Run]) -> None:
+    less = steps_of(ours) - steps_of(theirs)
+    low, high = interval(less)
+    share = sum(run.planning for run in ours) / sum(run.planning for run in theirs)
+    print(
+        f"    {setting!s:44s} {steps_of(theirs).mean():6.2f} steps  {milliseconds(theirs):8.1f} ms a decision; "
+        f"ours less theirs {less.mean():+.2f} [{low:+.2f}, {high:+.2f}] steps, our planning {share:.4f} of theirs",
+        flush=True,
+    )
+
+
 def interval(differences: np.ndarray) -> tuple[float, float]:
     draws = np.random.default_rng(0).choice(differences, (10_000, len(differences))).mean(axis=1)
     return float(np.quantile(draws, 0.025)), float(np.quantile(draws, 0.975))
@@ -256,37 +343,18 @@ def main() -> None:
     parser.add_argument("--simulations", type=int, nargs="+", default=SIMULATIONS)
     parser.add_argument("--priors", nargs="+", default=("uniform", "landmark"))
     parser.add_argument("--rollouts", nargs="+", default=("random", "heuristic"))
+    parser.add_argument("--kept", type=Path, help="a file of POUCT's finished runs: read first, and added to")
     options = parser.parse_args()
     use_threads(1)
-    for prior in options.priors:
-        with contextlib.redirect_stdout(io.StringIO()):
-            play_ours(world(0, prior))
-            ours = [play_ours(world(seed, prior)) for seed in range(options.seeds)]
-        steps = np.array([episode.steps for episode in ours], dtype=float)
-        spent = sum(one.planning for one in ours) / sum(one.decisions for one in ours)
-        per_run = sum(one.planning for one in ours) / len(ours)
-        print(f"  {prior} prior, {SIDE} x {SIDE}, {OBJECTS} object, {options.seeds} seeds")
-        print(
-            f"    ours: rollout                      {steps.mean():6.2f} steps  {1e3 * spent:8.2f} ms a decision",
-            flush=True,
-        )
-        for simulations in options.simulations:
-            for rollouts in options.rollouts:
-                with contextlib.redirect_stdout(io.StringIO()):
-                    theirs = [
-                        play_pouct(world(seed, prior), simulations, rollouts == "heuristic")
-                        for seed in range(options.seeds)
-                    ]
-                told = np.array([episode.steps for episode in theirs], dtype=float)
-                took = sum(one.planning for one in theirs) / sum(one.decisions for one in theirs)
-                low, high = interval(steps - told)
-                share = per_run / (sum(one.planning for one in theirs) / len(theirs))
-                name = f"POUCT, {simulations} simulations, {rollouts} rollouts"
-                print(
-                    f"    {name:44s} {told.mean():6.2f} steps  {1e3 * took:8.1f} ms a decision; ours less theirs "
-                    f"{(steps - told).mean():+.2f} [{low:+.2f}, {high:+.2f}] steps, our planning {share:.4f} of theirs",
-                    flush=True,
-                )
+    kept = Kept(options.kept)
+    ours = {prior: play_prior(prior, options.seeds) for prior in options.priors}
+    for prior, runs in ours.items():
+        tell_ours(prior, runs)
+    for simulations in options.simulations:
+        for rollouts in options.rollouts:
+            for prior, runs in ours.items():
+                setting = Setting(prior, simulations, rollouts)
+                tell_theirs(setting, [kept.played(setting, seed) for seed in range(options.seeds)], runs)
 
 
 if __name__ == "__main__":

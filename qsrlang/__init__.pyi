@@ -65,6 +65,7 @@ from .mixtures.scenes import SceneSamples
 from .planning.atlas import Atlas, Lattice
 from .planning.belief import Belief, voxel_weights
 from .planning.detecting import Detector
+from .planning.doubt import Doubt
 from .planning.frusta import Extent
 from .planning.goals import Goal
 from .planning.instances import Instances
@@ -136,6 +137,7 @@ __all__ = [
     "Diagnostic",
     "Diagnostics",
     "DistanceField",
+    "Doubt",
     "Drive",
     "Edit",
     "Exact",

@@ -17,7 +17,7 @@ from qsrlang.mixtures.answers import Where
 from qsrlang.mixtures.loading import load
 from qsrlang.mixtures.queries import KnowledgeBase
 from qsrlang.planning.atlas import Atlas
-from qsrlang.planning.belief import Belief, prior_of, voxel_weights
+from qsrlang.planning.belief import Belief, voxel_weights
 from qsrlang.planning.frusta import POINT, Extent
 from qsrlang.planning.goals import Goal
 from qsrlang.planning.instances import ONE
@@ -77,9 +77,7 @@ def weights_of(preset: PlannerEntry, belief: Where, places: FloatArray) -> Float
     claimed = 1.0 - belief.elsewhere
     if preset.belief is None:
         return voxel_weights(belief.mixture, places, preset.weight_floor, preset.weight_gain, claimed)
-    density = belief.mixture.pdf(places)
-    floor = 1.0 - claimed * (1.0 - preset.belief.floor)
-    return np.asarray(len(places) * prior_of(density, len(places), floor if density.any() else 1.0))
+    return len(places) * preset.belief.doubt().prior(belief.mixture, places, claimed)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -15,6 +15,7 @@ from qsrlang.experiments.tomlfiles import Entry, EntryT, read_entry
 from qsrlang.geometry.viewcone import Sector, Triangle, ViewCone
 from qsrlang.planning.atlas import MAX_HEADINGS, Lattice
 from qsrlang.planning.detecting import Detector
+from qsrlang.planning.doubt import Doubt
 from qsrlang.planning.instances import Instances
 from qsrlang.planning.outcome import Limits
 from qsrlang.planning.repeats import Repeats
@@ -125,16 +126,23 @@ class SightEntry(Entry):
 
 
 class BeliefEntry(Entry):
-    """The prior of planners with a belief: the share that is even over all supports whatever is known, the chance that
-    the target is not there, how many there may be (a whole number, or the mean of a Poisson number), and how much of
-    a look is a repetition of one from the same pose.
+    """The prior of planners with a belief: the share that is even over all supports whatever is known, the share of the
+    rest that is taken loosely, with spreads `stretch` times as large, the chance that the target is not there, how
+    many there may be (a whole number, or the mean of a Poisson number), and how much of a look is a repetition of
+    one from the same pose.
     """
 
     floor: Share
+    loose: Share = 0.0
+    stretch: Annotated[float, Field(ge=1.0, allow_inf_nan=False)] = 3.0
     absent: Annotated[float, Field(ge=0.0, lt=1.0)] = 0.0
     instances: Positive = 1.0
     poisson: bool = False
     repeated: Share = 0.0
+
+    def doubt(self) -> Doubt:
+        """Return how far the statements are not trusted."""
+        return Doubt(self.floor, self.loose, self.stretch)
 
     def number(self) -> Instances:
         """Return how many instances there may be."""

@@ -15,7 +15,7 @@ from qsrlang.geometry.pose import Pose2
 from qsrlang.language import questions
 from qsrlang.language.parser import parse_query
 from qsrlang.mixtures.queries import KnowledgeBase
-from qsrlang.planning.ranking import DEFAULT_FLOOR, LATTICE, RankedViews, rank_views
+from qsrlang.planning.ranking import DOUBT, LATTICE, RankedViews, rank_views
 
 ARM = "rollout"
 
@@ -53,7 +53,7 @@ def ask_views(
         floor_height=loaded.floor_height,
         extent=extent,
         detector=preset.looks.detector(),
-        prior_floor=preset.belief.floor if preset.belief else DEFAULT_FLOOR,
+        doubt=preset.belief.doubt() if preset.belief else DOUBT,
         lattice=preset.lattice.lattice() if preset.lattice else LATTICE,
         seconds=arm.limits.seconds,
         rng=rng,

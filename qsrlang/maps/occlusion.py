@@ -29,7 +29,7 @@ def clear_rays(grid: VoxelGrid, starts_map: npt.ArrayLike, ends_map: npt.ArrayLi
     return clear
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _look(voxels, starts, ends, clear):  # type: ignore[no-untyped-def]
     for n in range(len(starts)):
         x, y, z = starts[n, 0], starts[n, 1], starts[n, 2]
@@ -45,28 +45,31 @@ def is_clear(voxels, x, y, z, dx, dy, dz):  # type: ignore[no-untyped-def]
     first, last = clip(z, dz, nz, first, last)
     if first > last:
         return True
-    goal_i, goal_j, goal_k = math.floor(x + dx), math.floor(y + dy), math.floor(z + dz)
     i, left_i, next_i, wait_i = axis(x, dx, nx, first, last)
     j, left_j, next_j, wait_j = axis(y, dy, ny, first, last)
     k, left_k, next_k, wait_k = axis(z, dz, nz, first, last)
-    sign_i, sign_j, sign_k = 1 if left_i > 0 else -1, 1 if left_j > 0 else -1, 1 if left_k > 0 else -1
+    goal_i, goal_j, goal_k = math.floor(x + dx), math.floor(y + dy), math.floor(z + dz)
+    arrives = i + left_i == goal_i and j + left_j == goal_j and k + left_k == goal_k
+    step_i, step_j, step_k = (
+        ny * nz if left_i > 0 else -ny * nz,
+        nz if left_j > 0 else -nz,
+        1 if left_k > 0 else -1,
+    )
     left_i, left_j, left_k = abs(left_i), abs(left_j), abs(left_k)
-    while True:
-        if i == goal_i and j == goal_j and k == goal_k:
-            return True
-        if voxels[i, j, k] == _OCCUPIED:
+    cells, here = voxels.ravel(), (i * ny + j) * nz + k
+    for _ in range(left_i + left_j + left_k):
+        if cells[here] == _OCCUPIED:
             return False
-        if left_i + left_j + left_k == 0:
-            return True
-        if left_i > 0 and next_i <= next_j and next_i <= next_k:
-            i += sign_i
+        if next_i <= next_j and next_i <= next_k:
+            here += step_i
             left_i -= 1
             next_i = next_i + wait_i if left_i > 0 else math.inf
-        elif left_j > 0 and next_j <= next_k:
-            j += sign_j
+        elif next_j <= next_k:
+            here += step_j
             left_j -= 1
             next_j = next_j + wait_j if left_j > 0 else math.inf
         else:
-            k += sign_k
+            here += step_k
             left_k -= 1
             next_k = next_k + wait_k if left_k > 0 else math.inf
+    return arrives or cells[here] != _OCCUPIED

@@ -22,7 +22,9 @@ class VoxelGrid:
     source: str
 
     def __post_init__(self) -> None:
-        voxels = frozen_array("the voxels of a grid", self.voxels, (None, None, None), np.uint8)
+        voxels = frozen_array(
+            "the voxels of a grid", np.ascontiguousarray(self.voxels), (None, None, None), np.uint8
+        )
         object.__setattr__(self, "voxels", voxels)
         object.__setattr__(self, "origin", frozen_array("the origin of a voxel grid", self.origin, (3,)))
         if not 0.0 < self.resolution < np.inf:

@@ -8,7 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
-from qsrlang.arrays import FloatArray
+from qsrlang.arrays import FloatArray, IntArray
 from qsrlang.geometry.pose import Pose2
 from qsrlang.planning.atlas import Atlas
 from qsrlang.planning.belief import Belief
@@ -54,10 +54,10 @@ class Goal:
             self.sight.views(poses, self.belief.points_map, self.detector), self.looks, self.repeats
         )
 
-    def atlas_views(self) -> Views:
-        """Return the views of the atlas, given the looks before them."""
+    def atlas_views(self, views: IntArray) -> Views:
+        """Return some of the views of the atlas, given the looks before them."""
         assert self.atlas is not None
-        return discounted(self.atlas.views, self.looks, self.repeats)
+        return discounted(self.atlas.views.take(views), self.looks, self.repeats)
 
     def after_look(self, pose: Pose2, detections: Sequence[Detection], tilt: float | None = None) -> Goal:
         """Return the goal after a look: the target reported, or missed, and other things seen."""

@@ -81,14 +81,13 @@ def atlas_options(
     """
     atlas = goals[0].atlas
     assert atlas is not None
-    views = beside([goal.atlas_views() for goal in goals])
+    drawn = np.flatnonzero(atlas.drawn(rng)[atlas.place_of])
+    views, place_of = beside([goal.atlas_views(drawn) for goal in goals]), atlas.place_of[drawn]
     here = Ways.from_field(situation.field, atlas.places)
-    costs = first_costs(robot, situation.pose, here, atlas.place_of, views.poses[:, 2])
-    mass = scaled_mass(goals)
-    there = np.isfinite(costs[2]) & atlas.drawn(rng)[atlas.place_of]
-    values = np.where(there, views.values(mass), -1.0)
-    offered = _best_headings(values, views.poses[:, 2], atlas.place_of)
-    options = _reached(Options(views, atlas.place_of, *costs, atlas.ways).take(offered))
+    costs = first_costs(robot, situation.pose, here, place_of, views.poses[:, 2])
+    options, mass = _reached(Options(views, place_of, *costs, atlas.ways)), scaled_mass(goals)
+    offered = _best_headings(options.views.values(mass), options.views.poses[:, 2], options.place_of)
+    options = options.take(offered)
     return options.take(shortlist(options, mass, most))
 
 
@@ -143,14 +142,15 @@ def _reached(options: Options) -> Options:
 
 def _best_headings(values: FloatArray, yaws: FloatArray, place_of: IntArray) -> IntArray:
     """Return two views of each place that shows anything: the best, and the best of those far from its heading."""
-    count = int(place_of.max()) + 1 if len(place_of) else 0
-    best = _best_of_each(values, place_of, count)
-    apart = np.abs(np.remainder(yaws - yaws[best][place_of] + np.pi, 2.0 * np.pi) - np.pi) >= _APART
-    second = _best_of_each(np.where(apart, values, -1.0), place_of, count)
+    _, place = np.unique(place_of, return_inverse=True)
+    best = _best_of_each(values, place)
+    apart = np.abs(np.remainder(yaws - yaws[best][place] + np.pi, 2.0 * np.pi) - np.pi) >= _APART
+    second = _best_of_each(np.where(apart, values, -1.0), place)
     both = np.unique(np.concatenate([best, second]))
     return np.asarray(both[values[both] > 0.0])
 
 
-def _best_of_each(values: FloatArray, place_of: IntArray, count: int) -> IntArray:
-    order = np.lexsort((-values, place_of))
-    return np.asarray(order[np.searchsorted(place_of[order], np.arange(count))])
+def _best_of_each(values: FloatArray, place: IntArray) -> IntArray:
+    """Return the first of the best views of each place, where places are numbered from 0 without a gap."""
+    order = np.lexsort((-values, place))
+    return np.asarray(order[np.searchsorted(place[order], np.arange(place.max(initial=-1) + 1))])

@@ -21,6 +21,7 @@ from qsrlang.mixtures.gaussian import GaussianMixture
 from qsrlang.planning.atlas import Atlas, Lattice
 from qsrlang.planning.belief import Belief, voxel_weights
 from qsrlang.planning.detecting import Detector
+from qsrlang.planning.doubt import Doubt
 from qsrlang.planning.frusta import POINT, Extent
 from qsrlang.planning.goals import Goal
 from qsrlang.planning.planners.believing import BeliefPlanner
@@ -34,7 +35,7 @@ DETECTOR = Detector()
 LATTICE = Lattice(spacing=0.5, headings=24, offered=200)
 PAPER_CONE = Triangle(3.0, 1.0)
 PAPER_FLOOR, PAPER_GAIN = 1.0, 10.0
-DEFAULT_FLOOR = 0.3
+DOUBT = Doubt(floor=0.3, loose=0.5, stretch=3.0)
 MAX_RANKED = 1_000
 
 
@@ -104,7 +105,7 @@ def rank_views(
     floor_height: float = 0.0,
     extent: Extent = POINT,
     detector: Detector = DETECTOR,
-    prior_floor: float = DEFAULT_FLOOR,
+    doubt: Doubt = DOUBT,
     absent: float = 0.0,
     lattice: Lattice = LATTICE,
     seconds: float = 120.0,
@@ -112,8 +113,8 @@ def rank_views(
 ) -> RankedViews:
     """Return the `count` best views for a robot at `pose`, with gain, cost and the value of equation 3.
 
-    `where` is an answer or a mixture in the map frame, whose density at the `supports` makes the prior, `prior_floor`
-    of it even over all of them; or a belief, as it is after some looks. Views come from a lattice of the navigable
+    `where` is an answer or a mixture in the map frame, whose density at the `supports` makes the prior, trusted
+    but for the `doubt`; or a belief, as it is after some looks. Views come from a lattice of the navigable
     cells that the robot reaches; `voxels` hide what is behind them; `floor_height` is the z of the floor [m]; the
     target reaches as far as `extent` from its centre; `seconds` are left. `rng` draws which places are offered.
     Raises ValueRangeError, UnknownNameError, and BlockedPoseError where the robot cannot stand at its pose.
@@ -121,7 +122,7 @@ def rank_views(
     if not 1 <= count <= MAX_RANKED:
         raise ValueRangeError("the number of views", count, f"1 to {MAX_RANKED}")
     strategy, draws = strategy_named(planner), rng or np.random.default_rng(0)
-    belief = _belief(where, supports, voxels.resolution, extent, prior_floor, absent)
+    belief = _belief(where, supports, voxels.resolution, extent, doubt, absent)
     sight = Sight(camera, floor_height, voxels, extent)
     reachable = navigation.reachable_from(pose)
     atlas = Atlas.of(reachable, sight, belief.points_map, detector, lattice)
@@ -167,18 +168,15 @@ def _belief(
     supports: Supports,
     resolution: float,
     extent: Extent,
-    floor: float,
+    doubt: Doubt,
     absent: float,
 ) -> Belief:
     if isinstance(where, Belief):
         return where
     aims = supports.centres + np.array([0.0, 0.0, 0.5 * resolution + extent.half_height])
-    if isinstance(where, GaussianMixture):
-        density, claimed = where.pdf(aims[:, :2]), 1.0
-    else:
-        density, claimed = where.mixture.pdf(aims[:, :2]), 1.0 - where.elsewhere
-    even = 1.0 - claimed * (1.0 - floor) if density.any() else 1.0
-    return Belief.of_weights(aims, density, even, absent)
+    mixture = where if isinstance(where, GaussianMixture) else where.mixture
+    claimed = 1.0 if isinstance(where, GaussianMixture) else 1.0 - where.elsewhere
+    return Belief.of_weights(aims, doubt.prior(mixture, aims[:, :2], claimed), absent=absent)
 
 
 def _paper_weights(where: Where | GaussianMixture | Belief, belief: Belief) -> FloatArray:

@@ -14,19 +14,24 @@ from qsrlang.planning.threads import over_rows
 
 COMPILED = not getattr(config, "DISABLE_JIT", False)
 _SLACK = 1e-12
+_MARGIN = 1e-6
 
 
 def mark_in_view(
-    planes: FloatArray, eyes: FloatArray, points: FloatArray, voxels: VoxelGrid, seen: BoolArray
+    planes: FloatArray, eyes: FloatArray, reach: float, points: FloatArray, voxels: VoxelGrid, seen: BoolArray
 ) -> None:
-    """Set `seen` (N, K): whether points (K, 3) lie inside planes (N, 6, 4) and a free ray leads to them from eyes."""
+    """Set `seen` (N, K): whether points (K, 3) lie inside planes (N, 6, 4) and a free ray leads to them from eyes.
+
+    No point that lies between the planes is farther from the eye than `reach` [m].
+    """
     if not COMPILED:
         mark_plainly(planes, eyes, points, voxels, seen)
         return
     scale = 1.0 / voxels.resolution
     starts, ends = (eyes - voxels.origin) * scale, (points - voxels.origin) * scale
+    square = (scale * (reach + _MARGIN)) ** 2
     over_rows(
-        lambda first, last: _mark(planes, points, voxels.voxels, starts, ends, seen, first, last),
+        lambda first, last: _mark(planes, points, voxels.voxels, starts, ends, square, seen, first, last),
         len(planes),
         seen.size,
     )
@@ -91,12 +96,14 @@ def _is_inside(planes, n, x, y, z):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-def _mark(planes, points, voxels, starts, ends, seen, first, last):  # type: ignore[no-untyped-def]
+def _mark(planes, points, voxels, starts, ends, square, seen, first, last):  # type: ignore[no-untyped-def]
     for n in range(first, last):
         x, y, z = starts[n, 0], starts[n, 1], starts[n, 2]
         for k in range(len(points)):
-            inside = _is_inside(planes, n, points[k, 0], points[k, 1], points[k, 2])
-            seen[n, k] = inside and is_clear(voxels, x, y, z, ends[k, 0] - x, ends[k, 1] - y, ends[k, 2] - z)
+            dx, dy, dz = ends[k, 0] - x, ends[k, 1] - y, ends[k, 2] - z
+            near = dx * dx + dy * dy + dz * dz <= square
+            inside = near and _is_inside(planes, n, points[k, 0], points[k, 1], points[k, 2])
+            seen[n, k] = inside and is_clear(voxels, x, y, z, dx, dy, dz)
 
 
 @njit(cache=True, nogil=True)

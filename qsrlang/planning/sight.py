@@ -41,7 +41,8 @@ class Sight:
         poses, points = _checked(poses_map, points_map)
         seen = np.empty((len(poses), len(points)), dtype=np.bool_)
         planes = planes_of(poses, self.camera, self.floor, self.extent, tilts)
-        mark_in_view(planes, eyes_of(poses, self.camera, self.floor), points, self.voxels, seen)
+        eyes = eyes_of(poses, self.camera, self.floor)
+        mark_in_view(planes, eyes, self.reach, points, self.voxels, seen)
         return seen
 
     def views(

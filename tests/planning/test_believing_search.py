@@ -26,7 +26,7 @@ from qsrlang.planning.noise import FALSE_ALARM, Noise, NoisyWorld
 from qsrlang.planning.outcome import Limits
 from qsrlang.planning.planners.believing import BeliefPlanner
 from qsrlang.planning.planners.planner import Situation
-from qsrlang.planning.ranking import rank_views
+from qsrlang.planning.ranking import DOUBT, rank_views
 from qsrlang.planning.seeding import TrialSeeds
 from qsrlang.planning.sensing import Camera, Robot
 from qsrlang.planning.sight import Sight
@@ -313,7 +313,7 @@ def test_views_are_ranked_with_their_terms(planner):
 def test_a_belief_ranks_like_the_mixture_it_was_made_of():
     mixture = GaussianMixture([1.0], [CUP.position[:2]], [0.16 * np.eye(2)])
     aims = TABLES + np.array([0.0, 0.0, 0.05])
-    belief = Belief.of_weights(aims, mixture.pdf(aims[:, :2]), 0.3)
+    belief = Belief.of_weights(aims, DOUBT.prior(mixture, aims[:, :2]))
     assert [v.pose for v in ranking(belief).views] == [v.pose for v in ranking(mixture).views]
 
 

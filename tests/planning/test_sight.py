@@ -11,6 +11,7 @@ from qsrlang.errors import ValueRangeError
 from qsrlang.geometry.pose import Pose2
 from qsrlang.maps.occlusion import clear_rays
 from qsrlang.maps.occupancy import Cell
+from qsrlang.maps.raymarching import clear_rays_plainly
 from qsrlang.maps.voxels import VoxelGrid
 from qsrlang.planning.belief import Belief
 from qsrlang.planning.detecting import Detector
@@ -67,6 +68,17 @@ def test_a_wall_hides_what_is_behind_it_and_not_itself():
     eye = np.array([0.25, 1.0, 1.0])
     ends = np.array([[0.95, 1.0, 1.0], [1.05, 1.0, 1.0], [1.15, 1.0, 1.0], [1.95, 0.4, 1.6]])
     assert clear_rays(grid, np.tile(eye, (4, 1)), ends).tolist() == [True, True, False, False]
+
+
+@given(seeds)
+def test_rays_do_not_depend_on_how_voxels_lie_in_memory_and_match_plain_numpy(seed):
+    rng = np.random.default_rng(seed)
+    grid = place(rng)
+    turned = VoxelGrid(np.asfortranarray(grid.voxels), grid.resolution, grid.origin, "turned")
+    starts, ends = (rng.uniform([-2.5, -2.5, -0.2], [2.5, 2.5, 1.8], (60, 3)) for _ in range(2))
+    clear = clear_rays(grid, starts, ends)
+    assert (clear_rays(turned, starts, ends) == clear).all()
+    assert (clear_rays_plainly(grid, starts, ends) == clear).all()
 
 
 def test_frustum_near_far_height_and_tilt_decide():
@@ -153,7 +165,7 @@ def test_numpy_and_compiled_kernels_see_the_same(seed, thick):
     planes, eyes = planes_of(poses, CAMERA, 0.0, extent), eyes_of(poses, CAMERA, 0.0)
     plain, compiled = np.empty((10, 80), dtype=bool), np.empty((10, 80), dtype=bool)
     mark_plainly(planes, eyes, points, sight.voxels, plain)
-    mark_in_view(planes, eyes, points, sight.voxels, compiled)
+    mark_in_view(planes, eyes, sight.reach, points, sight.voxels, compiled)
     np.testing.assert_array_equal(plain, compiled)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from numba import njit
 
 from qsrlang.arrays import FloatArray, IntArray
+from qsrlang.planning.merging import merged
 from qsrlang.planning.problem import ViewProblem
 from qsrlang.planning.threads import over_rows
 
@@ -23,20 +24,23 @@ def follow_index(problem: ViewProblem, depth: int, powers: tuple[float, ...] = (
     way to the first view. Without a time limit the search goes on until the `depth` is reached or no view is left, the
     nearest first where none shows anything.
     """
-    tables, believed = _tables(problem)
+    alike = merged(problem)
+    tables, believed = _tables(alike)
+    columns = np.ascontiguousarray(alike.views.table().T)
+    nearness = np.array([problem.between ** (-1.0 / power) for power in powers])
     costs = np.empty(len(problem))
-    limits = (problem.seconds, depth, np.array(powers))
+    ahead = (columns, _gains(alike), problem.seconds, depth)
     over_rows(
-        lambda first, last: _follow(tables, believed, limits, costs, first, last),
+        lambda first, last: _follow(tables, believed, ahead, nearness, costs, first, last),
         len(problem),
-        len(powers) * depth * len(problem) * len(problem.views.shown),
+        len(powers) * depth * len(problem) * len(alike.views.shown),
     )
     return costs
 
 
 def follow_orders(problem: ViewProblem, orders: IntArray) -> FloatArray:
     """Return `ViewProblem.cost_of` each row of views (T, L), which a -1 ends: (T,) [s]."""
-    tables, believed = _tables(problem)
+    tables, believed = _tables(merged(problem))
     costs = np.empty(len(orders))
     over_rows(
         lambda first, last: _follow_orders(orders, tables, believed, problem.seconds, costs, first, last),
@@ -47,23 +51,18 @@ def follow_orders(problem: ViewProblem, orders: IntArray) -> FloatArray:
 
 
 def _tables(problem: ViewProblem) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
-    """Return what kernels read: the views by rows and by places, the costs; and what is believed at first."""
+    """Return what kernels read: the views and what they cost; and what is believed at first."""
     views = problem.views
-    order = np.argsort(views.shown, kind="stable")
-    showing = np.repeat(np.arange(len(views)), np.diff(views.starts))[order].astype(np.int32)
-    begins = np.concatenate([[0], np.cumsum(np.bincount(views.shown, minlength=views.places))])
-    goals = range(len(problem.instances))
-    gains = np.array([views.values(np.where(problem.goal_of == goal, problem.mass, 0.0)) for goal in goals])
-    tables = (
-        *(views.starts, views.shown, views.rates, begins, showing, views.rates[order]),
-        *(problem.goal_of, problem.first, problem.between),
-    )
-    believed = (
-        *(problem.mass, gains.reshape(len(problem.instances), len(views)), problem.unseen),
-        np.array([one.count for one in problem.instances]),
-        np.array([one.poisson for one in problem.instances]),
-    )
-    return tables, believed
+    tables = (views.starts, views.shown, views.rates, problem.goal_of, problem.first, problem.between)
+    counts = np.array([one.count for one in problem.instances])
+    poisson = np.array([one.poisson for one in problem.instances])
+    return tables, (problem.mass, problem.unseen, counts, poisson)
+
+
+def _gains(problem: ViewProblem) -> FloatArray:
+    """Return the mass of each target that each view shows: (G, N)."""
+    masses = [np.where(problem.goal_of == goal, problem.mass, 0.0) for goal in range(len(problem.instances))]
+    return np.array([problem.views.values(mass) for mass in masses])
 
 
 @njit(cache=True)
@@ -83,71 +82,95 @@ def _left(unseen, counts, poisson, scale):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _worth(view, gains, unseen, counts, poisson, scale):  # type: ignore[no-untyped-def]
-    total = 0.0
+def _scale(unseen, counts, poisson):  # type: ignore[no-untyped-def]
+    scale = np.empty(len(unseen))
     for goal in range(len(unseen)):
-        if scale[goal] > 0.0 and gains[goal, view] > 0.0:
-            before = _phi(unseen[goal], counts[goal], poisson[goal])
-            after = _phi(unseen[goal] - gains[goal, view], counts[goal], poisson[goal])
-            total += (before - after) / scale[goal]
-    return total
+        scale[goal] = _phi(unseen[goal], counts[goal], poisson[goal])
+    return scale
 
 
 @njit(cache=True)
-def _look(view, starts, shown, rates, begins, showing, inverse, goal_of, mass, gains, unseen):  # type: ignore[no-untyped-def]
+def _look(view, tables, mass, unseen):  # type: ignore[no-untyped-def]
+    starts, shown, rates, goal_of = tables[:4]
+    for entry in range(starts[view], starts[view + 1]):
+        seen = mass[shown[entry]] * rates[entry]
+        mass[shown[entry]] -= seen
+        unseen[goal_of[shown[entry]]] -= seen
+
+
+@njit(cache=True)
+def _look_ahead(view, tables, columns, mass, unseen, gains):  # type: ignore[no-untyped-def]
+    starts, shown, rates, goal_of = tables[:4]
     for entry in range(starts[view], starts[view + 1]):
         place = shown[entry]
         seen = mass[place] * rates[entry]
-        if seen <= 0.0:
-            continue
-        goal = goal_of[place]
+        goal, column = goal_of[place], columns[place]
         mass[place] -= seen
         unseen[goal] -= seen
-        for other in range(begins[place], begins[place + 1]):
-            gains[goal, showing[other]] -= seen * inverse[other]
+        left = gains[goal]
+        for other in range(len(column)):
+            left[other] -= seen * column[other]
 
 
 @njit(cache=True)
-def _next(view, used, gains, unseen, counts, poisson, scale, between, power, enough):  # type: ignore[no-untyped-def]
-    best, chosen, nearest = 0.0, -1, -1
-    for other in range(len(used)):
-        if used[other] or not math.isfinite(between[view, other]):
-            continue
-        if nearest < 0 or between[view, other] < between[view, nearest]:
-            nearest = other
-        worth = _worth(other, gains, unseen, counts, poisson, scale)
-        if worth > enough:
-            ratio = worth**power / between[view, other]
-            if ratio > best:
-                best, chosen = ratio, other
-    return chosen, nearest
-
-
-@njit(cache=True)
-def _cost_from(start, tables, believed, limits):  # type: ignore[no-untyped-def]
-    starts, shown, rates, begins, showing, inverse, goal_of, first, between = tables
-    mass, gains, unseen = believed[0].copy(), believed[1].copy(), believed[2].copy()
-    counts, poisson = believed[3], believed[4]
-    seconds, depth, power = limits
-    used, scale = np.zeros(len(first), dtype=np.bool_), np.empty(len(unseen))
+def _count_worths(gains, unseen, counts, poisson, scale, worths):  # type: ignore[no-untyped-def]
+    worths[:] = 0.0
     for goal in range(len(unseen)):
-        scale[goal] = _phi(unseen[goal], counts[goal], poisson[goal])
+        if scale[goal] <= 0.0:
+            continue
+        left, share, count, is_poisson = gains[goal], unseen[goal], counts[goal], poisson[goal]
+        if count == 1.0 and not is_poisson:
+            for view in range(len(worths)):
+                worths[view] += max(left[view], 0.0) / scale[goal]
+            continue
+        before = _phi(share, count, is_poisson)
+        for view in range(len(worths)):
+            after = _phi(share - max(left[view], 0.0), count, is_poisson)
+            worths[view] += (before - after) / scale[goal]
+
+
+@njit(cache=True)
+def _best(worths, near, looked, enough):  # type: ignore[no-untyped-def]
+    worths[looked] = 0.0
+    best, chosen = 0.0, -1
+    for view in range(len(worths)):
+        ratio = worths[view] * near[view]
+        if ratio > best and worths[view] > enough:
+            best, chosen = ratio, view
+    return chosen
+
+
+@njit(cache=True)
+def _nearest(costs, looked):  # type: ignore[no-untyped-def]
+    least, chosen = math.inf, -1
+    for view in range(len(costs)):
+        if costs[view] < least and not (looked == view).any():
+            least, chosen = costs[view], view
+    return chosen
+
+
+@njit(cache=True)
+def _cost_from(start, tables, believed, ahead, nearness):  # type: ignore[no-untyped-def]
+    first, between = tables[4:]
+    mass, unseen, counts, poisson = believed[0].copy(), believed[1].copy(), believed[2], believed[3]
+    columns, gains, seconds, depth = ahead[0], ahead[1].copy(), ahead[2], ahead[3]
+    worths, looked = np.empty(len(first)), np.empty(depth, dtype=np.int64)
+    scale = _scale(unseen, counts, poisson)
     view, step, clock, cost = np.int64(start), first[start], 0.0, 0.0
     left = _left(unseen, counts, poisson, scale)
-    for _ in range(depth):
+    for look in range(depth):
         step = min(step, seconds - clock)
         cost += step * left
         clock += step
         if clock >= seconds:
             break
-        used[view] = True
-        _look(view, starts, shown, rates, begins, showing, inverse, goal_of, mass, gains, unseen)
+        looked[look] = view
+        _look_ahead(view, tables, columns, mass, unseen, gains)
         left = _left(unseen, counts, poisson, scale)
-        chosen, nearest = _next(
-            view, used, gains, unseen, counts, poisson, scale, between, power, _ENOUGH * left
-        )
+        _count_worths(gains, unseen, counts, poisson, scale, worths)
+        chosen = _best(worths, nearness[view], looked[: look + 1], _ENOUGH * left)
         if chosen < 0 and not math.isfinite(seconds):
-            chosen = nearest
+            chosen = _nearest(between[view], looked[: look + 1])
         if chosen < 0:
             break
         step, view = between[view, chosen], chosen
@@ -155,21 +178,19 @@ def _cost_from(start, tables, believed, limits):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-def _follow(tables, believed, limits, costs, first, last):  # type: ignore[no-untyped-def]
+def _follow(tables, believed, ahead, nearness, costs, first, last):  # type: ignore[no-untyped-def]
     for start in range(first, last):
         costs[start] = math.inf
-        for power in limits[2]:
-            cost = _cost_from(start, tables, believed, (limits[0], limits[1], power))
+        for power in range(len(nearness)):
+            cost = _cost_from(start, tables, believed, ahead, nearness[power])
             costs[start] = min(costs[start], cost)
 
 
 @njit(cache=True)
 def _cost_of_order(order, tables, believed, seconds):  # type: ignore[no-untyped-def]
-    starts, shown, rates, _, _, _, goal_of, first, between = tables
-    mass, unseen, counts, poisson = believed[0].copy(), believed[2].copy(), believed[3], believed[4]
-    scale = np.empty(len(unseen))
-    for goal in range(len(unseen)):
-        scale[goal] = _phi(unseen[goal], counts[goal], poisson[goal])
+    first, between = tables[4:]
+    mass, unseen, counts, poisson = believed[0].copy(), believed[1].copy(), believed[2], believed[3]
+    scale = _scale(unseen, counts, poisson)
     clock, cost, last = 0.0, 0.0, -1
     for view in order:
         if view < 0 or clock >= seconds:
@@ -179,10 +200,7 @@ def _cost_of_order(order, tables, believed, seconds):  # type: ignore[no-untyped
         cost += step * left
         clock += step
         last = view
-        for entry in range(starts[view], starts[view + 1]):
-            seen = mass[shown[entry]] * rates[entry]
-            mass[shown[entry]] -= seen
-            unseen[goal_of[shown[entry]]] -= seen
+        _look(view, tables, mass, unseen)
     return (
         cost + (seconds - clock) * _left(unseen, counts, poisson, scale) if math.isfinite(seconds) else cost
     )
