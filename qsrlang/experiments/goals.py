@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from qsrlang.arrays import FloatArray
-from qsrlang.errors import QSRError
+from qsrlang.errors import UnplaceableError
 from qsrlang.experiments.places import Place
 from qsrlang.experiments.presets import PlannerEntry
 from qsrlang.experiments.scenarios import Arm, Scenario
@@ -111,7 +111,7 @@ class Reminder:
         try:
             before, after = known.where(self.target), known.with_landmarks(*landmarks).where(self.target)
             share = min(_accounted(known, kind, fresh) for kind in {one.kind for one in fresh})
-        except QSRError:
+        except UnplaceableError:
             return None
         told, old = (weights_of(self.preset, answer, self.places) for answer in (after, before))
         return np.asarray(share * told + (1.0 - share) * old)
