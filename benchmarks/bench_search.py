@@ -12,7 +12,7 @@ import subprocess
 from pathlib import Path
 
 import numpy as np
-from kitchen_searches import CASES, DRAWN, tell_case, tell_knowledge, tell_noise
+from kitchen_searches import CASES, DRAWN, tell_case, tell_knowledge, tell_noise, tell_strewn
 from numba import njit
 from random_rooms import excesses
 from timing import best_of
@@ -178,6 +178,7 @@ def bench_kitchen(options: argparse.Namespace) -> None:
             figure = qsr.draw_found_by_time(times, 120.0)
             qsr.save_figure(figure, IMAGES / f"search-found-{variant}-{camera}.png")
     knowledge, noise = tell_knowledge(options.trials // 4), tell_noise(options.trials // 4)
+    tell_strewn(options.trials // 4)
     if options.figures:
         save_lines(
             knowledge, "displacement of the known landmarks [m]", "censored mean time [s]", "search-knowledge"

@@ -1,4 +1,7 @@
-"""Searches in the paper's kitchen: the arms side by side, the knowledge displaced, the camera erring, and hindsight."""
+"""Searches in the paper's kitchen: the arms side by side, hindsight, and what goes wrong.
+
+The knowledge is displaced, the camera errs, or the cup stands anywhere.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,8 @@ from dataclasses import replace
 import numpy as np
 
 import qsrlang as qsr
+from qsrlang.experiments.arms import run_trial
+from qsrlang.experiments.briefings import brief
 from qsrlang.experiments.places import build_world, read_place
 from qsrlang.maps.ways import Ways
 from qsrlang.planning.motion import first_costs
@@ -21,6 +26,7 @@ CASES = (("A", "narrow"), ("B", "narrow"), ("C", "wide"), ("C", "narrow"))
 SHIFTS = (0.0, 0.25, 0.5, 1.0, 2.0)
 RATES, ALARMS = (1.0, 0.9, 0.7, 0.5), (0.0, 0.02, 0.1)
 POSES = 40_000
+ABOVE = 0.06
 
 
 def compared(scenario: qsr.Scenario, arms: Sequence[str], trials: int, variant: str) -> qsr.Comparison:
@@ -107,3 +113,46 @@ def tell_noise(trials: int) -> dict[str, tuple[list[float], list[float]]]:
                 curve[0].append(rate)
                 curve[1].append(figures[arm].time_censored)
     return curves
+
+
+def tell_strewn(count: int) -> None:
+    """Print the mean times to a cup put anywhere on the supports where a look from somewhere shows it."""
+    print(
+        f"  {count} cups, each alone somewhere on the supports, camera narrow: censored mean, standard error"
+    )
+    scenario, arms, rng = (
+        qsr.load_scenario("tum-kitchen", "narrow"),
+        ("rollout", "rollout-even"),
+        np.random.default_rng(SEED),
+    )
+    place = read_place(scenario)
+    briefings = brief(scenario, [scenario.arm(arm) for arm in arms], place, scenario.target)
+    poses = place.reachable.sample_poses(POSES // 10, rng)
+    seconds: list[list[float]] = []
+    while len(seconds) < count:
+        spot = rng.choice(briefings[0].supports.centres)
+        try:
+            with build_world(with_cup_at(scenario, spot), place, "C") as world:
+                if world.visible(poses)[:, 0].any():
+                    seeds = qsr.TrialSeeds(SEED, len(seconds))
+                    seconds.append([timed(world, one, place.reachable, seeds) for one in briefings])
+        except qsr.QSRError:
+            continue
+    table = np.array(seconds)
+    for arm, times in zip(arms, table.T, strict=True):
+        print(f"    {arm:14s} {times.mean():6.1f} s  {times.std() / math.sqrt(count):.1f}", flush=True)
+
+
+def with_cup_at(scenario: qsr.Scenario, spot: np.ndarray) -> qsr.Scenario:
+    x, y, z = (float(value) for value in spot)
+    moved = {"x": x, "y": y, "z": z + ABOVE}
+    placements = [
+        one.model_copy(update=moved if one.name == "cup-moved" else {}) for one in scenario.placements
+    ]
+    return replace(scenario, placements=tuple(placements))
+
+
+def timed(world, briefing, reachable: qsr.NavigationGrid, seeds: qsr.TrialSeeds) -> float:
+    world.reset()
+    result = run_trial(world, briefing, reachable, seeds)
+    return result.seconds if result.found else briefing.limits.seconds
