@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -14,30 +15,46 @@ from qsrlang.maps.stepping import axis, clip
 from qsrlang.maps.voxels import VoxelGrid
 
 _OCCUPIED = int(Cell.OCCUPIED)
+BLOCK = 4
+"""Voxels along the side of a block; a power of two, so that voxels lie in the same blocks in all arithmetic."""
+_SLACK = 1e-12
 
 
 def clear_rays(grid: VoxelGrid, starts_map: npt.ArrayLike, ends_map: npt.ArrayLike) -> BoolArray:
     """Return which rays from starts (R, 3) to ends (R, 3) [m] meet no occupied voxel before the one they end in: (R,).
 
-    What lies outside the grid, or is unknown, hides nothing.
+    What lies outside the grid, or is unknown, hides nothing. Rays pass from block to block of BLOCK^3 voxels, and voxel
+    by voxel through those alone that hold something.
     """
     starts = frozen_array("the starts of rays", starts_map, (None, 3))
     ends = frozen_array("the ends of rays", ends_map, (len(starts), 3))
     clear = np.empty(len(starts), dtype=np.bool_)
     scale = 1.0 / grid.resolution
-    _look(grid.voxels, (starts - grid.origin) * scale, (ends - grid.origin) * scale, clear)
+    first, last = (starts - grid.origin) * scale, (ends - grid.origin) * scale
+    _look(grid.voxels, occupied_blocks(grid), first, last, clear)
     return clear
 
 
+@lru_cache(maxsize=8)
+def occupied_blocks(grid: VoxelGrid) -> BoolArray:
+    """Return which blocks of BLOCK^3 voxels hold an occupied one."""
+    missing = [(0, -size % BLOCK) for size in grid.voxels.shape]
+    occupied = np.pad(grid.voxels == _OCCUPIED, missing)
+    nx, ny, nz = (size // BLOCK for size in occupied.shape)
+    blocks = occupied.reshape(nx, BLOCK, ny, BLOCK, nz, BLOCK).any(axis=(1, 3, 5))
+    blocks.setflags(write=False)
+    return np.asarray(blocks)
+
+
 @njit(cache=True, nogil=True)
-def _look(voxels, starts, ends, clear):  # type: ignore[no-untyped-def]
+def _look(voxels, blocks, starts, ends, clear):  # type: ignore[no-untyped-def]
     for n in range(len(starts)):
         x, y, z = starts[n, 0], starts[n, 1], starts[n, 2]
-        clear[n] = is_clear(voxels, x, y, z, ends[n, 0] - x, ends[n, 1] - y, ends[n, 2] - z)
+        clear[n] = is_clear(voxels, blocks, x, y, z, ends[n, 0] - x, ends[n, 1] - y, ends[n, 2] - z)
 
 
 @njit(cache=True)
-def is_clear(voxels, x, y, z, dx, dy, dz):  # type: ignore[no-untyped-def]
+def is_clear(voxels, blocks, x, y, z, dx, dy, dz):  # type: ignore[no-untyped-def]
     """Return whether no occupied voxel lies between (x, y, z) and (x + dx, y + dy, z + dz), in voxels, but the last."""
     nx, ny, nz = voxels.shape
     first, last = clip(x, dx, nx, 0.0, 1.0)
@@ -45,21 +62,20 @@ def is_clear(voxels, x, y, z, dx, dy, dz):  # type: ignore[no-untyped-def]
     first, last = clip(z, dz, nz, first, last)
     if first > last:
         return True
-    i, left_i, next_i, wait_i = axis(x, dx, nx, first, last)
-    j, left_j, next_j, wait_j = axis(y, dy, ny, first, last)
-    k, left_k, next_k, wait_k = axis(z, dz, nz, first, last)
-    goal_i, goal_j, goal_k = math.floor(x + dx), math.floor(y + dy), math.floor(z + dz)
-    arrives = i + left_i == goal_i and j + left_j == goal_j and k + left_k == goal_k
-    step_i, step_j, step_k = (
-        ny * nz if left_i > 0 else -ny * nz,
-        nz if left_j > 0 else -nz,
-        1 if left_k > 0 else -1,
-    )
+    i, j, k = math.floor(x + dx), math.floor(y + dy), math.floor(z + dz)
+    goal = (i * ny + j) * nz + k if 0 <= i < nx and 0 <= j < ny and 0 <= k < nz else -1
+    bx, by, bz = blocks.shape
+    i, left_i, next_i, wait_i = axis(x / BLOCK, dx / BLOCK, bx, first, last)
+    j, left_j, next_j, wait_j = axis(y / BLOCK, dy / BLOCK, by, first, last)
+    k, left_k, next_k, wait_k = axis(z / BLOCK, dz / BLOCK, bz, first, last)
+    step_i, step_j, step_k = by * bz * _sign(left_i), bz * _sign(left_j), _sign(left_k)
     left_i, left_j, left_k = abs(left_i), abs(left_j), abs(left_k)
-    cells, here = voxels.ravel(), (i * ny + j) * nz + k
+    flat, here, since = blocks.ravel(), (i * by + j) * bz + k, first
     for _ in range(left_i + left_j + left_k):
-        if cells[here] == _OCCUPIED:
+        until = min(next_i, next_j, next_k)
+        if flat[here] and not _is_free(voxels, x, y, z, dx, dy, dz, since - _SLACK, until + _SLACK, goal):
             return False
+        since = until
         if next_i <= next_j and next_i <= next_k:
             here += step_i
             left_i -= 1
@@ -72,4 +88,38 @@ def is_clear(voxels, x, y, z, dx, dy, dz):  # type: ignore[no-untyped-def]
             here += step_k
             left_k -= 1
             next_k = next_k + wait_k if left_k > 0 else math.inf
-    return arrives or cells[here] != _OCCUPIED
+    return not flat[here] or _is_free(voxels, x, y, z, dx, dy, dz, since - _SLACK, last, goal)
+
+
+@njit(cache=True)
+def _is_free(voxels, x, y, z, dx, dy, dz, first, last, goal):  # type: ignore[no-untyped-def]
+    """Return whether no voxel on the part [first, last] of a way is occupied but that of number `goal`."""
+    nx, ny, nz = voxels.shape
+    first, last = max(first, 0.0), min(last, 1.0)
+    i, left_i, next_i, wait_i = axis(x, dx, nx, first, last)
+    j, left_j, next_j, wait_j = axis(y, dy, ny, first, last)
+    k, left_k, next_k, wait_k = axis(z, dz, nz, first, last)
+    step_i, step_j, step_k = ny * nz * _sign(left_i), nz * _sign(left_j), _sign(left_k)
+    left_i, left_j, left_k = abs(left_i), abs(left_j), abs(left_k)
+    flat, here = voxels.ravel(), (i * ny + j) * nz + k
+    for _ in range(left_i + left_j + left_k):
+        if flat[here] == _OCCUPIED:
+            return here == goal
+        if next_i <= next_j and next_i <= next_k:
+            here += step_i
+            left_i -= 1
+            next_i = next_i + wait_i if left_i > 0 else math.inf
+        elif next_j <= next_k:
+            here += step_j
+            left_j -= 1
+            next_j = next_j + wait_j if left_j > 0 else math.inf
+        else:
+            here += step_k
+            left_k -= 1
+            next_k = next_k + wait_k if left_k > 0 else math.inf
+    return flat[here] != _OCCUPIED or here == goal
+
+
+@njit(cache=True, inline="always")
+def _sign(left):  # type: ignore[no-untyped-def]
+    return 1 if left > 0 else -1

@@ -11,7 +11,7 @@ from qsrlang.maps.voxels import VoxelGrid
 
 
 def clear_rays_plainly(grid: VoxelGrid, starts_map: npt.ArrayLike, ends_map: npt.ArrayLike) -> BoolArray:
-    """Return what `occlusion.clear_rays` returns, by the same steps (Amanatides and Woo 1987): (R,)."""
+    """Return what `occlusion.clear_rays` returns, voxel by voxel (Amanatides and Woo 1987): (R,)."""
     scale = 1.0 / grid.resolution
     starts = (frozen_array("the starts of rays", starts_map, (None, 3)) - grid.origin) * scale
     ends = (frozen_array("the ends of rays", ends_map, (len(starts), 3)) - grid.origin) * scale

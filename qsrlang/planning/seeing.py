@@ -6,7 +6,7 @@ import numpy as np
 from numba import config, njit
 
 from qsrlang.arrays import BoolArray, FloatArray, IntArray
-from qsrlang.maps.occlusion import is_clear
+from qsrlang.maps.occlusion import is_clear, occupied_blocks
 from qsrlang.maps.raymarching import clear_rays_plainly
 from qsrlang.maps.voxels import VoxelGrid
 from qsrlang.planning.frusta import PLANES
@@ -30,8 +30,9 @@ def mark_in_view(
     scale = 1.0 / voxels.resolution
     starts, ends = (eyes - voxels.origin) * scale, (points - voxels.origin) * scale
     square = (scale * (reach + _MARGIN)) ** 2
+    cells, blocks = voxels.voxels, occupied_blocks(voxels)
     over_rows(
-        lambda first, last: _mark(planes, points, voxels.voxels, starts, ends, square, seen, first, last),
+        lambda first, last: _mark(planes, points, cells, blocks, starts, ends, square, seen, first, last),
         len(planes),
         seen.size,
     )
@@ -50,8 +51,9 @@ def mark_clear(
         return
     scale = 1.0 / voxels.resolution
     starts, ends = (eyes - voxels.origin) * scale, (points - voxels.origin) * scale
+    cells, blocks, square = voxels.voxels, occupied_blocks(voxels), square * scale * scale
     over_rows(
-        lambda first, last: _clear(voxels.voxels, starts, ends, square * scale * scale, clear, first, last),
+        lambda first, last: _clear(cells, blocks, starts, ends, square, clear, first, last),
         len(eyes),
         10 * clear.size,
     )
@@ -96,24 +98,24 @@ def _is_inside(planes, n, x, y, z):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-def _mark(planes, points, voxels, starts, ends, square, seen, first, last):  # type: ignore[no-untyped-def]
+def _mark(planes, points, voxels, blocks, starts, ends, square, seen, first, last):  # type: ignore[no-untyped-def]
     for n in range(first, last):
         x, y, z = starts[n, 0], starts[n, 1], starts[n, 2]
         for k in range(len(points)):
             dx, dy, dz = ends[k, 0] - x, ends[k, 1] - y, ends[k, 2] - z
             near = dx * dx + dy * dy + dz * dz <= square
             inside = near and _is_inside(planes, n, points[k, 0], points[k, 1], points[k, 2])
-            seen[n, k] = inside and is_clear(voxels, x, y, z, dx, dy, dz)
+            seen[n, k] = inside and is_clear(voxels, blocks, x, y, z, dx, dy, dz)
 
 
 @njit(cache=True, nogil=True)
-def _clear(voxels, starts, ends, square, clear, first, last):  # type: ignore[no-untyped-def]
+def _clear(voxels, blocks, starts, ends, square, clear, first, last):  # type: ignore[no-untyped-def]
     for n in range(first, last):
         x, y, z = starts[n, 0], starts[n, 1], starts[n, 2]
         for k in range(len(ends)):
             dx, dy, dz = ends[k, 0] - x, ends[k, 1] - y, ends[k, 2] - z
             near = dx * dx + dy * dy + dz * dz <= square
-            clear[n, k] = near and is_clear(voxels, x, y, z, dx, dy, dz)
+            clear[n, k] = near and is_clear(voxels, blocks, x, y, z, dx, dy, dz)
 
 
 @njit(cache=True, nogil=True)
