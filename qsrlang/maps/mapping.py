@@ -11,7 +11,7 @@ from numba import njit
 from qsrlang.arrays import frozen_array
 from qsrlang.errors import ValueRangeError
 from qsrlang.maps.occupancy import Cell
-from qsrlang.maps.stepping import axis, clip
+from qsrlang.maps.stepping import clip_all, enter, onward
 from qsrlang.maps.voxels import VoxelGrid
 
 LOG_ODDS_HIT, LOG_ODDS_MISS = 0.85, -0.4
@@ -88,32 +88,17 @@ def _mark(marks, start, ends, reach):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _pass(marks, x, y, z, dx, dy, dz, last):  # type: ignore[no-untyped-def]
-    nx, ny, nz = marks.shape
-    first, last = clip(x, dx, nx, 0.0, last)
-    first, last = clip(y, dy, ny, first, last)
-    first, last = clip(z, dz, nz, first, last)
+    first, last = clip_all(x, y, z, dx, dy, dz, marks.shape, last)
     if first > last:
         return
-    i, left_i, next_i, wait_i = axis(x, dx, nx, first, last)
-    j, left_j, next_j, wait_j = axis(y, dy, ny, first, last)
-    k, left_k, next_k, wait_k = axis(z, dz, nz, first, last)
-    sign_i, sign_j, sign_k = 1 if left_i > 0 else -1, 1 if left_j > 0 else -1, 1 if left_k > 0 else -1
-    left_i, left_j, left_k = abs(left_i), abs(left_j), abs(left_k)
-    for _ in range(left_i + left_j + left_k + 1):
-        if marks[i, j, k] == 0:
-            marks[i, j, k] = _PASSED
-        if next_i <= next_j and next_i <= next_k:
-            i += sign_i if left_i else 0
-            left_i -= 1
-            next_i = next_i + wait_i if left_i > 0 else math.inf
-        elif next_j <= next_k:
-            j += sign_j
-            left_j -= 1
-            next_j = next_j + wait_j if left_j > 0 else math.inf
-        else:
-            k += sign_k
-            left_k -= 1
-            next_k = next_k + wait_k if left_k > 0 else math.inf
+    here, count, steps, waits, left, borders = enter(x, y, z, dx, dy, dz, marks.shape, first, last)
+    flat = marks.ravel()
+    for _ in range(count):
+        if flat[here] == 0:
+            flat[here] = _PASSED
+        here, left, borders = onward(here, steps, waits, left, borders)
+    if flat[here] == 0:
+        flat[here] = _PASSED
 
 
 @njit(cache=True)

@@ -11,7 +11,7 @@ from numba import njit
 
 from qsrlang.arrays import BoolArray, frozen_array
 from qsrlang.maps.occupancy import Cell
-from qsrlang.maps.stepping import axis, clip
+from qsrlang.maps.stepping import clip_all, enter, onward
 from qsrlang.maps.voxels import VoxelGrid
 
 _OCCUPIED = int(Cell.OCCUPIED)
@@ -57,69 +57,31 @@ def _look(voxels, blocks, starts, ends, clear):  # type: ignore[no-untyped-def]
 def is_clear(voxels, blocks, x, y, z, dx, dy, dz):  # type: ignore[no-untyped-def]
     """Return whether no occupied voxel lies between (x, y, z) and (x + dx, y + dy, z + dz), in voxels, but the last."""
     nx, ny, nz = voxels.shape
-    first, last = clip(x, dx, nx, 0.0, 1.0)
-    first, last = clip(y, dy, ny, first, last)
-    first, last = clip(z, dz, nz, first, last)
+    first, last = clip_all(x, y, z, dx, dy, dz, voxels.shape, 1.0)
     if first > last:
         return True
     i, j, k = math.floor(x + dx), math.floor(y + dy), math.floor(z + dz)
     goal = (i * ny + j) * nz + k if 0 <= i < nx and 0 <= j < ny and 0 <= k < nz else -1
-    bx, by, bz = blocks.shape
-    i, left_i, next_i, wait_i = axis(x / BLOCK, dx / BLOCK, bx, first, last)
-    j, left_j, next_j, wait_j = axis(y / BLOCK, dy / BLOCK, by, first, last)
-    k, left_k, next_k, wait_k = axis(z / BLOCK, dz / BLOCK, bz, first, last)
-    step_i, step_j, step_k = by * bz * _sign(left_i), bz * _sign(left_j), _sign(left_k)
-    left_i, left_j, left_k = abs(left_i), abs(left_j), abs(left_k)
-    flat, here, since = blocks.ravel(), (i * by + j) * bz + k, first
-    for _ in range(left_i + left_j + left_k):
-        until = min(next_i, next_j, next_k)
+    start, way = (x / BLOCK, y / BLOCK, z / BLOCK), (dx / BLOCK, dy / BLOCK, dz / BLOCK)
+    here, count, steps, waits, left, borders = enter(*start, *way, blocks.shape, first, last)
+    flat, since = blocks.ravel(), first
+    for _ in range(count):
+        until = min(borders)
         if flat[here] and not _is_free(voxels, x, y, z, dx, dy, dz, since - _SLACK, until + _SLACK, goal):
             return False
         since = until
-        if next_i <= next_j and next_i <= next_k:
-            here += step_i
-            left_i -= 1
-            next_i = next_i + wait_i if left_i > 0 else math.inf
-        elif next_j <= next_k:
-            here += step_j
-            left_j -= 1
-            next_j = next_j + wait_j if left_j > 0 else math.inf
-        else:
-            here += step_k
-            left_k -= 1
-            next_k = next_k + wait_k if left_k > 0 else math.inf
+        here, left, borders = onward(here, steps, waits, left, borders)
     return not flat[here] or _is_free(voxels, x, y, z, dx, dy, dz, since - _SLACK, last, goal)
 
 
 @njit(cache=True)
 def _is_free(voxels, x, y, z, dx, dy, dz, first, last, goal):  # type: ignore[no-untyped-def]
     """Return whether no voxel on the part [first, last] of a way is occupied but that of number `goal`."""
-    nx, ny, nz = voxels.shape
     first, last = max(first, 0.0), min(last, 1.0)
-    i, left_i, next_i, wait_i = axis(x, dx, nx, first, last)
-    j, left_j, next_j, wait_j = axis(y, dy, ny, first, last)
-    k, left_k, next_k, wait_k = axis(z, dz, nz, first, last)
-    step_i, step_j, step_k = ny * nz * _sign(left_i), nz * _sign(left_j), _sign(left_k)
-    left_i, left_j, left_k = abs(left_i), abs(left_j), abs(left_k)
-    flat, here = voxels.ravel(), (i * ny + j) * nz + k
-    for _ in range(left_i + left_j + left_k):
+    here, count, steps, waits, left, borders = enter(x, y, z, dx, dy, dz, voxels.shape, first, last)
+    flat = voxels.ravel()
+    for _ in range(count):
         if flat[here] == _OCCUPIED:
             return here == goal
-        if next_i <= next_j and next_i <= next_k:
-            here += step_i
-            left_i -= 1
-            next_i = next_i + wait_i if left_i > 0 else math.inf
-        elif next_j <= next_k:
-            here += step_j
-            left_j -= 1
-            next_j = next_j + wait_j if left_j > 0 else math.inf
-        else:
-            here += step_k
-            left_k -= 1
-            next_k = next_k + wait_k if left_k > 0 else math.inf
+        here, left, borders = onward(here, steps, waits, left, borders)
     return flat[here] != _OCCUPIED or here == goal
-
-
-@njit(cache=True, inline="always")
-def _sign(left):  # type: ignore[no-untyped-def]
-    return 1 if left > 0 else -1
