@@ -194,7 +194,9 @@ def draw_learning() -> None:
     curves["mean"] = np.mean(list(curves.values()), axis=0).tolist()
     lines = {name: (benchmark["SCANS"], values) for name, values in curves.items()}
     least = min(0.0, *(min(values) for values in curves.values()))
-    figure = qsr.draw_curves(lines, "scans of the desk seen before", "gain [nat/object]", lowest=least)
+    figure = qsr.draw_curves(
+        lines, "scans of the desk seen before", "gain [nat/object]", lowest=least, bold="mean"
+    )
     qsr.save_figure(figure, IMAGES / "learning-curves.png")
 
 

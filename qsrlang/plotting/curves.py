@@ -31,11 +31,12 @@ def draw_curves(
     log: bool = False,
     limit: float | None = None,
     lowest: float = 0.0,
+    bold: str | None = None,
 ) -> Figure:
     """Return lines y(x), each a pair of arrays (N,) with its name at its end; `log` scales both axes by tens.
 
-    `limit` ends the x axis; without `log` the y axis starts at `lowest`. Raises ValueRangeError where no curve is
-    given, or one has no points or not as many y as x.
+    `limit` ends the x axis; without `log` the y axis starts at `lowest`; the curve named `bold` stands out. Raises
+    ValueRangeError where no curve is given, or one has no points or not as many y as x.
     """
     if not curves:
         raise ValueRangeError("the number of curves in a picture", 0, "at least 1")
@@ -47,9 +48,11 @@ def draw_curves(
     if log:
         axes.set(xscale="log", yscale="log")
     colours = dict(zip(lines, cycle(style.PARTS), strict=False))
+    if bold is not None:
+        colours[bold] = style.INK
     for name, (x, y) in lines.items():
-        mark = "o" if len(x) <= 12 else ""
-        axes.plot(x, y, color=colours[name], linewidth=1.5, marker=mark, markersize=3.0, gid="curve")
+        mark, width = "o" if len(x) <= 12 else "", 3.0 if name == bold else 1.5
+        axes.plot(x, y, color=colours[name], linewidth=width, marker=mark, markersize=3.0, gid="curve")
     if limit is not None:
         axes.set_xlim(0.0, limit)
     if not log:

@@ -32,3 +32,10 @@ def test_both_axes_by_tens():
 def test_senseless_curves_are_refused(curves):
     with pytest.raises(ValueRangeError):
         draw_curves(curves, "x", "y")
+
+
+def test_the_bold_curve_stands_out():
+    figure = draw_curves({"a": ([1, 2], [1, 2]), "mean": ([1, 2], [2, 1])}, "x", "y", bold="mean")
+    one, bold = lines(figure)
+    assert bold.get_linewidth() > one.get_linewidth()
+    assert bold.get_color() != one.get_color()
