@@ -87,8 +87,7 @@ class NoisyWorld:
         if not len(places):
             return []
         x, y, z = places[rng.integers(len(places))].tolist()
-        kind = self._targets[0] if len(self._targets) == 1 else str(rng.choice(self._targets))
-        return [Detection(FALSE_ALARM, kind, (x, y, z))]
+        return [Detection(FALSE_ALARM, self._targets[rng.integers(len(self._targets))], (x, y, z))]
 
     def _draw(self, name: str) -> np.random.Generator:
         pose = self.robot_pose

@@ -12,6 +12,7 @@ from qsrlang.experiments.scenarios import load_scenario
 from qsrlang.experiments.stories import open_search
 from qsrlang.mixtures.loading import load
 from qsrlang.planning.noise import Noise
+from qsrlang.planning.ranking import DOUBT
 from qsrlang.planning.world import Detection
 
 PRESET = read_planner(find_preset("planners", "lookahead", Path()))
@@ -78,3 +79,8 @@ def test_a_false_alarm_is_no_find(looking_ahead):
     fooled = [trial for trial in trials if trial.detected == "false alarm"]
     assert fooled
     assert all(not trial.found and trial.seconds == 120.0 for trial in fooled)
+
+
+@pytest.mark.parametrize("name", ["lookahead", "lookahead-drawn", "lookahead-wary"])
+def test_presets_doubt_as_much_as_views_that_are_asked_for(name):
+    assert read_planner(find_preset("planners", name, Path())).belief.doubt() == DOUBT

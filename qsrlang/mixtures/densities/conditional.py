@@ -62,20 +62,20 @@ class PolarConditional:
 
     def turning(self, heading: float, is_certain: bool) -> Turning | None:
         """Return the moments in the relatum's frame, unless they depend on a place: of a support, viewer or relatum."""
-        if self.is_fixed:
+        if self._is_fixed:
             return _turning(self.density, (0.5 * np.pi,) * len(self.frames), self.part)._replace(fixed=True)
         axes = self._turning_axes(heading, is_certain)
         return None if axes is None else _turning(self.density, axes, self.part)
 
     @property
-    def is_fixed(self) -> bool:
+    def _is_fixed(self) -> bool:
         """Whether all axes are the map's, and no box turns with the relatum."""
         is_alone = self.standpoint.second is None and self.density.support is None
         return is_alone and self.density.boxes.are_points and set(self.frames) == {Frame.ABSOLUTE}
 
     def turns(self, heading: float, is_certain: bool) -> bool:
         """Return whether it is the same in the relatum's frame, wherever that is, as far as its heading is certain."""
-        is_fixed = is_certain and self.is_fixed
+        is_fixed = is_certain and self._is_fixed
         return is_fixed or self._turning_axes(heading, is_certain) is not None
 
     def _turning_axes(self, heading: float, is_certain: bool) -> tuple[float, ...] | None:
@@ -226,29 +226,32 @@ def polar_density(
     graph: RelationGraph, constraint: Constraint, support: Support | None
 ) -> tuple[PolarDensity, tuple[Frame, ...]]:
     """Return the product of a constraint's atoms as one polar density, with the frame of each angle factor."""
-    words = tuple([(atom.relation, frame_of(constraint, atom)) for atom in constraint.atoms])
+    relations = tuple([atom.relation for atom in constraint.atoms])
+    frames = tuple([frame_of(constraint, atom) for atom in constraint.atoms])
     outline = None if support is None else support.outline
     boxes = _boxes(graph, constraint, support)
-    return density_of(words, boxes, outline, graph.reach, constraint.statement.text)
+    return product_of(relations, frames, boxes, outline, graph.reach, constraint.statement.text)
 
 
-def density_of(
-    words: tuple[tuple[Relation, Frame], ...],
+def product_of(
+    relations: tuple[Relation, ...],
+    frames: tuple[Frame, ...],
     boxes: Boxes,
     outline: ConvexPolygon | None,
     reach: float,
     what: str,
 ) -> tuple[PolarDensity, tuple[Frame, ...]]:
-    """Return the product of relations in frames as one polar density, with the frame of each angle factor.
+    """Return the product of relations, each in its frame, as one polar density, with the frame of each angle factor.
 
     `what` names it in errors.
     """
-    turning = [(relation.angle, frame) for relation, frame in words if relation.angle is not None]
-    frames = tuple([frame for _, frame in turning]) or (Frame.RELATIVE,)
+    said = zip(relations, frames, strict=True)
+    turning = [(relation.angle, frame) for relation, frame in said if relation.angle is not None]
     angles = tuple([bump(angle) for angle, _ in turning]) or (bump(None),)
-    distances = tuple([relation.distance for relation, _ in words if relation.distance is not None])
-    hands = tuple([hand(frame) for frame in frames])
-    return PolarDensity(angles, hands, distances, boxes, outline, reach, what), frames
+    axes = tuple([frame for _, frame in turning]) or (Frame.RELATIVE,)
+    distances = tuple([relation.distance for relation in relations if relation.distance is not None])
+    hands = tuple([hand(frame) for frame in axes])
+    return PolarDensity(angles, hands, distances, boxes, outline, reach, what), axes
 
 
 def _boxes(graph: RelationGraph, constraint: Constraint, support: Support | None) -> Boxes:

@@ -11,10 +11,10 @@ from qsrlang.mixtures.densities.conditional import (
     Conditional,
     FitConditional,
     PolarConditional,
-    density_of,
     frame_of,
     half_box_of,
     polar_conditional,
+    product_of,
 )
 from qsrlang.mixtures.densities.regions import region_conditional
 from qsrlang.mixtures.densities.stance import Boxes
@@ -54,8 +54,8 @@ class Words(NamedTuple):
 
     def conditional(self, has_heading: bool) -> PolarConditional:
         """Return the density about a relatum in columns x, y and, if it has one, heading, seen from no other place."""
-        said, boxes = zip(self.relations, self.frames, strict=True), Boxes(self.referent, self.relatum)
-        density, frames = density_of(tuple(said), boxes, None, self.reach, "")
+        boxes = Boxes(self.referent, self.relatum)
+        density, frames = product_of(self.relations, self.frames, boxes, None, self.reach, "")
         standpoint = Standpoint(Anchor(0, 2 if has_heading else None, ""))
         return PolarConditional(density, frames, standpoint, self.part)
 

@@ -211,7 +211,11 @@ def _only_state(polar: Sequence[PolarConditional], seats: Sequence[Seat]) -> Flo
 def _shares_in_words(
     said: Words, asked: tuple[Holding, ...], heading: float | None, is_certain: bool
 ) -> FloatArray | None:
-    """Return the shares of a density in windows, as `_shares` does, by words; None where they depend on more."""
+    """Return the shares of a density in windows, as `_shares` does, by words alone.
+
+    None where they depend on more; and where nothing has room, which is an error of the statement that says so, and is
+    raised where that is at hand.
+    """
     polar = [one.conditional(heading is not None) for one in (said, *(each.words for each in asked))]
     if not all(one.turns(heading or 0.0, is_certain) for one in polar):
         return None
